@@ -1,6 +1,6 @@
 // bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 6e11b025e57710d9
+// Version: 0.2.0, hash 78a0a8387b7a007e
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
 //   permutation, shear, edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013
 //   (conservative boxes). The naive triangle: Möller and Trumbore, "Fast, Minimum Storage
@@ -44,8 +44,8 @@ struct BvhTraceNode {
     lower: vec3u,
     // Upper sides, likewise.
     upper: vec3u,
-    // What each child is: the number of a node, below 2^30; or a leaf, its number of triangles, 1 or
-    // 2, in the two highest bits and its first triangle in the others; or BVH_TRACE_NONE.
+    // What each child is: the number of a node, below 2^30; or a leaf, its number of triangles, 1 to
+    // 3, in the two highest bits and its first triangle in the others; or BVH_TRACE_NONE.
     children: vec4u,
 }
 
@@ -160,7 +160,7 @@ fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) ->
 // The box of a child of a node.
 // Returns: BvhTraceExtent; for a place without a child, the node's corner twice.
 // Units: those of the positions.
-// Domain: child 0 to 3; coordinates up to 1e12; exponents of 87 to 167, steps of 2^-40 to 2^40.
+// Domain: child 0 to 3; coordinates up to 1e12; exponents of 1 to 167, steps of 2^-126 to 2^40.
 // Outside: a child of 4 and more counts as its remainder by 4; finite for exponents up to 240 and
 //   coordinates up to 1e30.
 // Accuracy: lavapipe lower 1 ulp, upper 1 ulp; portable lower 1 ulp, upper 1 ulp
@@ -177,7 +177,7 @@ fn bvh_trace_child_box(node: BvhTraceNode, child: u32) -> BvhTraceExtent {
 // The box around all children of a node; around the whole mesh if the node is the root.
 // Returns: BvhTraceExtent.
 // Units: those of the positions.
-// Domain: coordinates up to 1e12; exponents of 87 to 167, steps of 2^-40 to 2^40.
+// Domain: coordinates up to 1e12; exponents of 1 to 167, steps of 2^-126 to 2^40.
 // Outside: finite for exponents up to 240 and coordinates up to 1e30.
 // Accuracy: lavapipe lower 1 ulp, upper 1 ulp; portable lower 1 ulp, upper 1 ulp
 fn bvh_trace_bounds(node: BvhTraceNode) -> BvhTraceExtent {

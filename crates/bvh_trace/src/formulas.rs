@@ -433,7 +433,8 @@ fn ray_formulas() -> Vec<Formula> {
 /// Draws a node: of any bytes, or of the boxes of a hierarchy's node, with 1 to 4 children.
 fn node(draws: &mut Draws<'_>) -> BvhTraceNode {
     let exponent = 87 + draws.below(81);
-    let near = |draws: &mut Draws<'_>| (exponent + draws.below(3)).min(167);
+    // An axis along which the node is flat has the smallest step.
+    let near = |draws: &mut Draws<'_>| if draws.below(4) == 0 { 1 } else { (exponent + draws.below(3)).min(167) };
     let steps = near(draws) | near(draws) << 8 | near(draws) << 16;
     let step = 2f64.powi(exponent as i32 - 127);
     // Corners where the sum rounds, and where it cancels.
@@ -470,6 +471,7 @@ fn node_formulas() -> Vec<Formula> {
             .edge("the last child", |(_, child)| child == 3)
             .edge("no child", |(node, child)| node.children[child as usize] == BVH_TRACE_NONE)
             .edge("a corner at the origin", |(node, _)| node.corner == Vec3::ZERO)
+            .edge("a flat axis", |(node, _)| node.steps & 255 == 1)
             .edge("steps that differ", |(node, _)| node.steps & 255 != node.steps >> 8 & 255)
             .edge("a sum that cancels", |(node, child)| {
                 let BvhTraceExtent { lower, .. } = mirror::child_box(node, child);

@@ -23,7 +23,7 @@ const MOST_IN_A_LEAF: usize = 2;
 const MOST_SPLITS: usize = 2 * BVH_TRACE_LEVELS;
 /// Number of bins along each axis; splits are tried between them.
 const BINS: usize = 16;
-/// Cost of a step down relative to a triangle: two boxes and their transfer from memory.
+/// Cost of a split relative to a triangle's test.
 const STEP: f64 = 1.0;
 
 /// A hierarchy of boxes over the triangles of a mesh.
@@ -88,13 +88,14 @@ impl Extent {
 impl Bvh {
     /// Builds the hierarchy of a mesh, of at most [`BVH_TRACE_LEVELS`] levels of nodes. `indices` are
     /// three per triangle, counter-clockwise from outside. Triangles with a corner that is not
-    /// finite, or that does not exist, cannot be hit and are left out.
+    /// finite, or that does not exist, cannot be hit and are left out; so are those from 2³⁰ on, whose
+    /// numbers do not fit into a node.
     #[must_use]
     pub fn build(positions: &[Vec3], indices: &[u32]) -> Self {
         let corner = |index: u32| positions.get(index as usize).copied().filter(|position| position.is_finite());
         let mut triangles: Vec<Triangle> = indices
             .chunks_exact(3)
-            .zip(0..)
+            .zip(0..BVH_TRACE_LEAF)
             .filter_map(|(corners, number)| {
                 let [a, b, c] = [corner(corners[0])?, corner(corners[1])?, corner(corners[2])?];
                 Some(Triangle { number, lower: a.min(b).min(c), upper: a.max(b).max(c) })
@@ -167,7 +168,7 @@ fn nodes(triangles: &mut [Triangle]) -> Vec<BvhTraceNode> {
         let mut node = BvhTraceNode::around(parts.iter().map(|part| part.extent));
         let mut inner = Vec::new();
         for (child, part) in parts.into_iter().enumerate() {
-            // A mesh has fewer triangles and nodes than 2^30, because its indices are counted by u32.
+            // `build` takes less than 2^30 triangles, and there are fewer nodes.
             if part.middle.is_none() {
                 node.children[child] = part.range.start as u32 | (part.range.len() as u32) << 30;
             } else {

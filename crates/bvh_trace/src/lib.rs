@@ -55,7 +55,7 @@ pub struct BvhTraceNode {
     /// Upper sides, likewise.
     pub upper: UVec3,
     /// What each child is: the number of a node, below 2³⁰; or a leaf, its number of triangles, 1
-    /// or 2, in the two highest bits and its first triangle in the others; or [`BVH_TRACE_NONE`].
+    /// to 3, in the two highest bits and its first triangle in the others; or [`BVH_TRACE_NONE`].
     pub children: UVec4,
 }
 

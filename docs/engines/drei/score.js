@@ -58,13 +58,14 @@ function steadiness(picture, turned, mask) {
   return { change: mean(changes), jumps: mean(changes.map((change) => (change > JUMP ? 1 : 0))) };
 }
 
-/** FLIP by `cook compare`; null if this cook has no such command. */
+/** FLIP by `cook compare`; null, with a message, if that fails. */
 function flip(program, reference, picture) {
   try {
     const words = ['compare', reference, picture];
     const text = execFileSync(program, words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
-    return Number(/FLIP\s+([\d.]+)/.exec(text)?.[1] ?? NaN) || null;
-  } catch {
+    return Number(/FLIP\s+([\d.]+)/.exec(text)[1]);
+  } catch (error) {
+    console.error(`no FLIP of ${picture}: ${error.message}`);
     return null;
   }
 }

@@ -1,8 +1,11 @@
 //! Comparison of two picture files: how different they look, and how different their light is.
 
 use glam::Vec3;
-use image::{DynamicImage, ImageReader};
+use image::{DynamicImage, ImageDecoder as _, ImageReader, Limits};
 use std::path::{Path, PathBuf};
+
+/// Most pixels along a side, those of `cook render`.
+const LARGEST: u32 = 8192;
 
 /// Reason why two pictures could not be compared.
 #[derive(Debug, thiserror::Error)]
@@ -94,9 +97,19 @@ fn read(path: &Path) -> Result<Picture, CompareError> {
         path: path.to_owned(),
         reason: reason.replace(char::is_control, " "),
     };
+    let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+    if !metadata.is_file() {
+        return Err(unreadable(lapidary_scene::not_a_file(&metadata).to_owned()));
+    }
     let reader = ImageReader::open(path).map_err(|error| unreadable(error.to_string()))?;
     let reader = reader.with_guessed_format().map_err(|error| unreadable(error.to_string()))?;
-    let image = reader.decode().map_err(|error| unreadable(error.to_string()))?;
+    let mut decoder = reader.into_decoder().map_err(|error| unreadable(error.to_string()))?;
+    let (width, height) = decoder.dimensions();
+    if width.max(height) > LARGEST {
+        return Err(unreadable(format!("it is {width} x {height} pixels, more than {LARGEST} along a side")));
+    }
+    decoder.set_limits(Limits::no_limits()).map_err(|error| unreadable(error.to_string()))?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|error| unreadable(error.to_string()))?;
     let size = (image.width(), image.height());
     let is_linear = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
     let values: Vec<[f32; 4]> = image.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
@@ -163,6 +176,15 @@ mod tests {
         let hole = exr(folder.path(), "hole.exr", |x, y| [if (x, y) == (3, 2) { f32::NAN } else { 1.0 }; 4]);
         let message = compare(&truth, &hole).expect_err("NaN").to_string();
         assert!(message.contains("pixel (3, 2)"), "{message}");
+        let small = folder.path().join("small.png");
+        RgbaImage::new(4, 4).save(&small).expect("a PNG");
+        let message = compare(&truth, &small).expect_err("another size").to_string();
+        assert!(
+            message.contains("small.png") && message.contains("(4, 4)") && message.contains("(16, 8)"),
+            "{message}"
+        );
+        let message = compare(&truth, folder.path()).expect_err("a folder").to_string();
+        assert!(message.contains("cannot be read"), "{message}");
         let black = exr(folder.path(), "black.exr", |_, _| [0.0; 4]);
         assert_eq!(compare(&black, &truth).expect("two pictures").rmse, f64::INFINITY);
     }

@@ -5,7 +5,8 @@ use lapidary_cook::compare::{Difference, compare};
 use std::path::PathBuf;
 
 /// Compares two pictures of one size, PNG or EXR: mean FLIP of what one sees, and RMSE of linear
-/// radiance over the reference's root mean square. Only pixels that the reference covers count.
+/// radiance over the reference's root mean square. Only pixels that the reference covers count;
+/// all, if it covers none.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook compare reference.exr brilliant.exr")]
 pub(super) struct Arguments {

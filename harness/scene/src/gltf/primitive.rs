@@ -19,8 +19,8 @@ use crate::normals::{Averaging, Cofactors, shared_normals};
 use crate::{Mesh, Object};
 
 /// Maximum number of vertices, and of triangle corners, in one mesh of instances. The longest list
-/// built from them is a hierarchy with two nodes of 32 bytes each for a triangle: 85 MiB, which any
-/// device holds in one buffer (WebGPU guarantees 128 MiB).
+/// built from them is a hierarchy with at most a node of 64 bytes for each triangle: 85 MiB, which
+/// any device holds in one buffer (WebGPU guarantees 128 MiB).
 const MOST_JOINED: usize = 1 << 22;
 
 /// Adds an object for each triangle primitive that `node` shows. All instances of a primitive form
