@@ -66,5 +66,8 @@ export function serve(out, { size, rounds, pictures, profile, port = 0 }, ended)
       ended(error);
     }
   });
-  return new Promise((resolve) => server.listen(port, '127.0.0.1', () => resolve(server)));
+  return new Promise((resolve, reject) => {
+    server.once('error', reject);
+    server.listen(port, '127.0.0.1', () => resolve(server));
+  });
 }

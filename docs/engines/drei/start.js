@@ -32,7 +32,10 @@ const looking = rounds === 'serve';
 
 if (looking) {
   const tell = (error) => error && console.error(error.message);
-  const server = await serve(out, { size: Number(size), rounds: 0, port: 8080 }, tell);
+  const server = await serve(out, { size: Number(size), rounds: 0, port: 8080 }, tell).catch((error) => {
+    console.error(`port 8080: ${error.message}`);
+    process.exit(2);
+  });
   console.log(`http://localhost:${server.address().port}/`);
 } else {
   const profile = mkdtempSync(join(tmpdir(), 'drei-'));
@@ -51,7 +54,11 @@ if (looking) {
     if (error instanceof Error) console.error(error.message);
     server.close();
     server.closeAllConnections();
-    rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+    try {
+      rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });
+    } catch {
+      // A process of Chromium still writes there; the system empties its folder of temporary files.
+    }
     process.exitCode ??= 1;
   };
   chromium.on('error', closed);
