@@ -1,6 +1,6 @@
 // ray_footprint: which part of a pixel shows what lies beyond the edge of a facet inside a stone, and which neighbours show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 05967dd5607ab28c
+// Version: 0.2.0, hash 20eac229215e5340
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
 //   mixing of neighbours: Persson, "Geometry Buffer Anti-Aliasing", in GPU Pro 3, 2012, for edges of
 //   the drawn mesh. The edges seen through facets, their shares, and the growth: own.
@@ -58,7 +58,8 @@ fn ray_footprint_edge(direction: vec3f, right: vec3f, down: vec3f, nearest: vec3
 
 // The share of a pixel beyond a line: the area of the unit square around the middle in which
 // g . p > f.
-// Returns: area in [0, 1/2]; 1/2 for a line through the middle, 0 without a gradient.
+// Returns: area in [0, 1/2], but for rounding; 1/2 for a line through the middle, 0 without a
+//   gradient.
 // Units: pixels; `edge` is (f, gx, gy) in any common unit.
 // Domain: f in [0, 1e9]; gx and gy 0, or of a magnitude in [1e-15, 1e9].
 // Outside: for f below 0, the area of -f.
