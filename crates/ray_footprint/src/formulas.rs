@@ -154,12 +154,11 @@ fn share_formula() -> Formula {
         .edge("along a diagonal", |(edge,)| edge.y.abs() == edge.z.abs() && edge.y != 0.0)
         .edge("beyond the pixel", |(edge,)| edge.x > reach(edge))
         .edge("no gradient", |(edge,)| edge.y == 0.0 && edge.z == 0.0)
-        .invariant(
-            "at most a half",
-            |_, share: f32| {
-                if (0.0..=0.5).contains(&share) { Ok(()) } else { Err(format!("{share}")) }
-            },
-        )
+        .invariant("at most a half, but for rounding", |_, share: f32| {
+            // A triangle's two heights are rounded twice each, two quotients and a product once:
+            // in WGSL 4 + 5 + 1 ulp.
+            if (0.0..=0.5 * (1.0 + 10.0 * f32::EPSILON)).contains(&share) { Ok(()) } else { Err(format!("{share}")) }
+        })
         .pair(
             "axes exchanged",
             |(edge,)| (vec3(edge.x, edge.z, edge.y),),
