@@ -15,9 +15,9 @@ fn ray(draws: &mut Draws<'_>, high: i32) -> (BvhTraceRay, Vec3, Vec3) {
     (bvh::ray(vector_up_to(draws, high), direction, lower, upper), lower, upper)
 }
 
-/// Draws a node of any bytes, with exponents up to `high`.
-fn node(draws: &mut Draws<'_>, high: u32) -> BvhTraceNode {
-    let mut exponent = || draws.below(high + 1);
+/// Draws a node of any bytes, with exponents from `low` to `high`.
+fn node(draws: &mut Draws<'_>, low: u32, high: u32) -> BvhTraceNode {
+    let mut exponent = || low + draws.below(high + 1 - low);
     let steps = exponent() | exponent() << 8 | exponent() << 16;
     let corner = vector_up_to(draws, 99);
     BvhTraceNode { corner, steps, lower: any_numbers(draws), upper: any_numbers(draws), children: UVec4::ZERO }
@@ -52,11 +52,11 @@ pub(super) fn promises() -> Vec<Promise> {
         like(
             "bvh_trace_child_box",
             "a child of 4 and more counts as its remainder by 4",
-            |draws| (node(draws, 167), 4 + draws.below(u32::MAX - 4)),
+            |draws| (node(draws, 1, 167), 4 + draws.below(u32::MAX - 4)),
             |(node, child): (BvhTraceNode, u32)| (node, child % 4),
         ),
-        finite("bvh_trace_child_box", FAR_STEPS, |draws| (node(draws, 240), draws.below(4))),
-        finite("bvh_trace_bounds", FAR_STEPS, |draws| (node(draws, 240),)),
+        finite("bvh_trace_child_box", FAR_STEPS, |draws| (node(draws, 0, 240), draws.below(4))),
+        finite("bvh_trace_bounds", FAR_STEPS, |draws| (node(draws, 0, 240),)),
         finite("bvh_trace_box", HUGE, move |draws| {
             let (ray, lower, upper) = ray(draws, huge);
             (ray, lower, upper, draws.magnitude(-20, 120))
