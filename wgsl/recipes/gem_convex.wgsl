@@ -65,6 +65,20 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     return GemHit(convex_trace_point(position, direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
 
+// Each ray has a search of its own.
+fn gem_hit_both(
+    place: ptr<function, GemPlace>,
+    position: vec3f,
+    direction: vec3f,
+    place_other: ptr<function, GemPlace>,
+    position_other: vec3f,
+    direction_other: vec3f,
+) -> GemHits {
+    let first = gem_hit(place, position, direction);
+    let second = gem_hit(place_other, position_other, direction_other);
+    return GemHits(first, second);
+}
+
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);  //+convex_trace

@@ -67,12 +67,11 @@ fn gem_enter(input: GemVertex) -> GemPlace {
     return GemPlace(input.face, input.position - stone.centre);
 }
 
-fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
-    let start = (*place).position;
-    let left = (*place).face;
-    var nearest = convex_trace_start(convex_walk_exit(start, direction, stone.lower, stone.upper));
+// Walks from a point that is not inside the stone, the hit so far, to the facet that the ray meets.
+fn gem_walk(so_far: ConvexTraceHit, first_cell: u32, start: vec3f, direction: vec3f, left: u32) -> ConvexTraceHit {
+    var nearest = so_far;
     var before = nearest.face;
-    var cell = convex_walk_cell(convex_walk_square(start + nearest.distance * direction), stone.side);
+    var cell = first_cell;
     for (var step = 0u; step < CONVEX_WALK_STEPS; step++) {
         let word = facet_map[cell];
         let more = word >= CONVEX_WALK_MORE;
@@ -88,15 +87,77 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
                 break;
             }
             before = nearest.face;
-            cell = convex_walk_cell(convex_walk_square(start + nearest.distance * direction), stone.side);
+            cell = gem_cell(start + nearest.distance * direction);
         }
     }
+    return nearest;
+}
+
+fn gem_cell(point: vec3f) -> u32 {
+    return convex_walk_cell(convex_walk_square(point), stone.side);
+}
+
+// Moves a ray's place to the facet that it meets.
+fn gem_met(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f, nearest: ConvexTraceHit) -> GemHit {
     if (nearest.face == CONVEX_TRACE_NONE) {
         return GemHit(position, -direction, 0.0f, false);
     }
     let plane = planes[nearest.face];
-    *place = GemPlace(nearest.face, convex_trace_point(start, direction, nearest.distance, plane));
+    *place = GemPlace(nearest.face, convex_trace_point((*place).position, direction, nearest.distance, plane));
     return GemHit((*place).position + stone.centre, -plane.xyz, nearest.distance, true);
+}
+
+fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
+    let start = (*place).position;
+    let beyond = convex_trace_start(convex_walk_exit(start, direction, stone.lower, stone.upper));
+    let cell = gem_cell(start + beyond.distance * direction);
+    return gem_met(place, position, direction, gem_walk(beyond, cell, start, direction, (*place).face));
+}
+
+// The walk of the first ray, whose candidates the second ray is tested against as well. If that finds
+// another facet for it, it walks on from there by itself. It may then have missed a facet that is
+// met by neither ray's candidates: a sliver between two edges.
+fn gem_hit_both(
+    place: ptr<function, GemPlace>,
+    position: vec3f,
+    direction: vec3f,
+    place_other: ptr<function, GemPlace>,
+    position_other: vec3f,
+    direction_other: vec3f,
+) -> GemHits {
+    let start = (*place).position;
+    let left = (*place).face;
+    let start_other = (*place_other).position;
+    let left_other = (*place_other).face;
+    var nearest = convex_trace_start(convex_walk_exit(start, direction, stone.lower, stone.upper));
+    var other = convex_trace_start(CONVEX_TRACE_FAR);
+    var before = nearest.face;
+    var cell = gem_cell(start + nearest.distance * direction);
+    for (var step = 0u; step < CONVEX_WALK_STEPS; step++) {
+        let word = facet_map[cell];
+        let more = word >= CONVEX_WALK_MORE;
+        let rest = (word >> CONVEX_WALK_SHIFT) & CONVEX_WALK_PLACE;
+        let first = word & CONVEX_WALK_FACE;
+        let second = select(rest, first, more);
+        nearest = convex_trace_step(nearest, start, direction, planes[first], first, left);
+        nearest = convex_trace_step(nearest, start, direction, planes[second], second, left);
+        other = convex_trace_step(other, start_other, direction_other, planes[first], first, left_other);
+        other = convex_trace_step(other, start_other, direction_other, planes[second], second, left_other);
+        if (more) {
+            cell = rest;
+        } else {
+            if (nearest.face == before) {
+                break;
+            }
+            before = nearest.face;
+            cell = gem_cell(start + nearest.distance * direction);
+        }
+    }
+    if (other.face != nearest.face) {
+        let point = start_other + other.distance * direction_other;
+        other = gem_walk(other, gem_cell(point), start_other, direction_other, left_other);
+    }
+    return GemHits(gem_met(place, position, direction, nearest), gem_met(place_other, position_other, direction_other, other));
 }
 
 @fragment

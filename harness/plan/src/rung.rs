@@ -54,6 +54,8 @@ pub enum Spectrum {
     Paper,
     /// The exact first-order tracker.
     Tracker,
+    /// A ray for blue and one for green, from which red is tracked.
+    Split,
     /// The given number of wavelengths, each with a ray of its own; 3 stands for the colour
     /// channels.
     Separate(u32),
@@ -64,7 +66,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 34] = [
+pub const NAMES: [&str; 35] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -77,6 +79,7 @@ pub const NAMES: [&str; 34] = [
     "proxy-8",
     "walk-8",
     "walk-8+tracker",
+    "walk-8+split",
     "convex-1",
     "convex-8",
     "convex-8+tracker",
@@ -101,7 +104,7 @@ pub const NAMES: [&str; 34] = [
     "reference",
 ];
 /// The grammar of rung names, for messages and help.
-pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
+pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+split|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
      quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
      cells, such as godunov-64; for both reference";
@@ -184,6 +187,7 @@ impl fmt::Display for Rung {
             Spectrum::One => Ok(()),
             Spectrum::Paper => f.write_str("+paper"),
             Spectrum::Tracker => f.write_str("+tracker"),
+            Spectrum::Split => f.write_str("+split"),
             Spectrum::Separate(count) => write!(f, "+{count}"),
         }
     }
@@ -216,6 +220,7 @@ impl FromStr for Rung {
             None => Spectrum::One,
             Some("paper") => Spectrum::Paper,
             Some("tracker") => Spectrum::Tracker,
+            Some("split") => Spectrum::Split,
             Some(count) => match whole(count).ok_or_else(unknown)? {
                 count if (3..=MOST_WAVELENGTHS).contains(&count) => Spectrum::Separate(count),
                 count => return Err(format!("{count} wavelengths; 3 to {MOST_WAVELENGTHS} are followed")),

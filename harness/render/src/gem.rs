@@ -13,6 +13,7 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
     let (form, wavelengths) = match rung.spectrum() {
         Spectrum::One | Spectrum::Tracker => (1, 3),
         Spectrum::Paper => (0, 3),
+        Spectrum::Split => (3, 3),
         Spectrum::Separate(count) => (2, count),
     };
     let mut constants = decisions.constants();

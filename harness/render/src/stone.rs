@@ -105,7 +105,11 @@ const LAVAPIPE_STEPS: u64 = 65_535;
 
 /// Rejects a rung that lavapipe would render incorrectly.
 fn check_steps(builder: &Builder<'_>, rung: Rung, steps: u64) -> Result<(), RenderError> {
-    let rays = if let Spectrum::Separate(count) = rung.spectrum() { u64::from(count) } else { 1 };
+    let rays = match rung.spectrum() {
+        Spectrum::One | Spectrum::Paper | Spectrum::Tracker => 1,
+        Spectrum::Split => 2,
+        Spectrum::Separate(count) => u64::from(count),
+    };
     let steps = rays * (1 + u64::from(rung.hits()) * (1 + steps));
     if builder.gpu().is_some_and(Gpu::is_lavapipe) && steps > LAVAPIPE_STEPS {
         return Err(RenderError::TooManySteps { rung, steps, limit: LAVAPIPE_STEPS });
@@ -231,7 +235,9 @@ pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<GemWav
     let entry = |weights: DMat3, index: f32| GemWavelength { weights: weights.as_mat3(), index };
     match spectrum {
         // Without separate wavelengths, one entry fills the binding.
-        Spectrum::One | Spectrum::Paper | Spectrum::Tracker => vec![entry(DMat3::IDENTITY, material.ior)],
+        Spectrum::One | Spectrum::Paper | Spectrum::Tracker | Spectrum::Split => {
+            vec![entry(DMat3::IDENTITY, material.ior)]
+        }
         Spectrum::Separate(3) => {
             let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(DMat3::from_diagonal);
             channels.into_iter().zip(channel_indices(material).to_array()).map(|(w, n)| entry(w, n)).collect()

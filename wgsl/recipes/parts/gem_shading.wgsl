@@ -5,8 +5,8 @@
 //
 // A geometry recipe adds: the part surroundings, and mesh if it reads one; struct GemVertex, whose members include
 // `position`, `face_normal` and, with instances, `instance`; the entry point gem_vertex; struct
-// GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters); and
-// gem_hit (the next facet).
+// GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
+// gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
 
 // A wall without an interior: the environment behind it shows undeflected below the reflection.
 // Called for by KHR_materials_transmission without a thickness from KHR_materials_volume.
@@ -20,7 +20,7 @@ override EFFECT_DISPERSION: bool = false;
 // by EXT_mesh_gpu_instancing.
 override EFFECT_INSTANCES: bool = false;
 // How dispersion is traced: 0 the paper's tracker, 1 the exact first-order tracker, 2 one ray per
-// wavelength.
+// wavelength, 3 a ray for blue and one for green, from which red is tracked.
 override DISPERSION_FORM: u32 = 1u;
 // Number of entries of `wavelengths` that form 2 traces.
 override WAVELENGTHS: u32 = 3u;
@@ -38,6 +38,7 @@ override LIMIT_THROUGHPUT: bool = false;
 
 const GEM_DISPERSION_PAPER: u32 = 0u;
 const GEM_DISPERSION_SEPARATE: u32 = 2u;
+const GEM_DISPERSION_SPLIT: u32 = 3u;
 
 struct GemView {
     clip_from_world: mat4x4f,
@@ -104,6 +105,12 @@ struct GemHit {
     // Distance along the ray.
     distance: f32,
     hit: bool,
+}
+
+// The next facets of two rays.
+struct GemHits {
+    first: GemHit,
+    second: GemHit,
 }
 
 //+instances {
@@ -218,10 +225,10 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
     return GemRay(position, direction, 0.0f, vec3f(1.0f), vec3f(0.0f), true);
 }
 
-// Follows a ray to the next facet. The loops below `break` only with LIMIT_THROUGHPUT: without a
-// `break` a compiler may unroll them, and few rays end before the last bounce for other reasons.
-fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHit {
-    let hit = gem_hit(place, (*ray).position, (*ray).direction);
+// Takes a ray as far as its next facet. Returns whether it is followed there. The loops below `break`
+// only with LIMIT_THROUGHPUT: without a `break` a compiler may unroll them, and few rays end before
+// the last bounce for other reasons.
+fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
     if ((*ray).followed) {
         (*ray).travelled += hit.distance;
         (*ray).followed = hit.hit && !gem_ends((*ray).travelled);
@@ -229,7 +236,7 @@ fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHi
     if (EFFECT_ABSORPTION && (*ray).followed) {
         (*ray).throughput *= gem_transmittance(hit.distance);
     }
-    return hit;
+    return (*ray).followed;
 }
 
 // Lets a share of each channel leave and adds the radiance that it meets outside.
@@ -262,8 +269,8 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_next(&ray, &place);
-        if (ray.followed) {
+        let hit = gem_hit(&place, ray.position, ray.direction);
+        if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
                 gem_leave(&ray, vec3f(exit.share), gem_surroundings(exit.direction));
@@ -282,6 +289,14 @@ fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
     return vec3f(gem_surroundings(red).r, gem_surroundings(green).g, gem_surroundings(blue).b);
 }
 
+fn gem_environment_red_green(red: vec3f, green: vec3f) -> vec3f {
+    return vec3f(gem_surroundings(red).r, gem_surroundings(green).g, 0.0f);
+}
+
+fn gem_environment_blue(blue: vec3f) -> vec3f {
+    return vec3f(0.0f, 0.0f, gem_surroundings(blue).b);
+}
+
 // Radiance of three channels inside the stone, from one ray at the d line and its derivative with
 // respect to the refractive index. The derivative gives each channel's ray inside. At a facet that
 // ray is refracted with the channel's own index, so total internal reflection and reflectance are
@@ -295,8 +310,8 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_next(&ray, &place);
-        if (ray.followed) {
+        let hit = gem_hit(&place, ray.position, ray.direction);
+        if (gem_arrive(&ray, hit)) {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r);
             let green = gem_exit(dispersion_direction(ray.direction, gradient, offsets.g), hit.normal, material.channel_indices.g);
             let blue = gem_exit(dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b);
@@ -316,6 +331,49 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
         ));
     }
     return ray.radiance;
+}
+
+// Radiance of three channels inside the stone, from two rays. What one ray cannot show is that the
+// colours part: at an edge each goes on to a facet of its own. Blue's index is twice as far from
+// green's as red's is, so that blue has a ray, and red is tracked from green's. As long as both rays
+// meet the same facets, one search finds them.
+fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
+    let indices = material.channel_indices;
+    let offset = indices.r - indices.g;
+    var place = gem_enter(input);
+    var place_blue = place;
+    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, indices.g).direction);
+    var blue = gem_ray(input.position, refraction_refract(direction, input.face_normal, indices.b).direction);
+    ray.throughput = vec3f(1.0f, 1.0f, 0.0f);
+    blue.throughput = vec3f(0.0f, 0.0f, 1.0f);
+    var gradient = dispersion_enter(direction, input.face_normal, indices.g);
+    for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        if (LIMIT_THROUGHPUT && !ray.followed && !blue.followed) {
+            break;
+        }
+        let hits = gem_hit_both(&place, ray.position, ray.direction, &place_blue, blue.position, blue.direction);
+        if (gem_arrive(&ray, hits.first)) {
+            let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
+            let green = gem_exit(ray.direction, hits.first.normal, indices.g);
+            if (red.share > 0.0f || green.share > 0.0f) {
+                gem_leave(&ray, vec3f(red.share, green.share, 0.0f), gem_environment_red_green(red.direction, green.direction));
+            }
+            gem_reflect(&ray, hits.first);
+            gradient = dispersion_reflect(gradient, hits.first.normal);
+        }
+        if (gem_arrive(&blue, hits.second)) {
+            let exit = gem_exit(blue.direction, hits.second.normal, indices.b);
+            if (exit.share > 0.0f) {
+                gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share), gem_environment_blue(exit.direction));
+            }
+            gem_reflect(&blue, hits.second);
+        }
+    }
+    if (REST_FROM_ENVIRONMENT) {
+        let red = dispersion_direction(ray.direction, gradient, offset);
+        return gem_end(ray, gem_environment_red_green(red, ray.direction)) + gem_end(blue, gem_environment_blue(blue.direction));
+    }
+    return ray.radiance + blue.radiance;
 }
 
 // Radiance around a red ray, with green and blue shifted along the paper's direction of dispersion,
@@ -340,8 +398,8 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_next(&ray, &place);
-        if (ray.followed) {
+        let hit = gem_hit(&place, ray.position, ray.direction);
+        if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
                 let leaving = dispersion_paper_refract(ray.direction, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
@@ -422,6 +480,11 @@ fn gem_radiance(
     } else if (DISPERSION_FORM == GEM_DISPERSION_PAPER) {
         if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
             inside = gem_trace_paper(input, direction);  //+bvh_trace,convex_trace,proxy_geometry
+        }  //+bvh_trace,convex_trace,proxy_geometry
+    } else if (DISPERSION_FORM == GEM_DISPERSION_SPLIT) {
+        reflectance = gem_reflectance_channels(cosine);
+        if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+            inside = gem_trace_split(input, direction);  //+bvh_trace,convex_trace,proxy_geometry
         }  //+bvh_trace,convex_trace,proxy_geometry
     } else {
         reflectance = gem_reflectance_channels(cosine);

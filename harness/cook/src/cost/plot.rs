@@ -39,6 +39,8 @@ pub enum Marker {
     Triangle,
     /// A cross.
     Cross,
+    /// A square.
+    Square,
 }
 
 /// A point of a series.
@@ -342,6 +344,10 @@ impl Plot {
                     Marker::Ring => chart.draw_series([Circle::new(at, size, color.stroke_width(2))])?,
                     Marker::Triangle => chart.draw_series([TriangleMarker::new(at, size + 1, color.filled())])?,
                     Marker::Cross => chart.draw_series([Cross::new(at, size, color.stroke_width(2))])?,
+                    Marker::Square => {
+                        let square = Rectangle::new([(-size, -size), (size, size)], color.filled());
+                        chart.draw_series([EmptyElement::at(at) + square])?
+                    }
                 };
             }
         }

@@ -96,6 +96,8 @@ fn the_picture_is_the_mirrors() {
         ("brilliant", "convex-8+tracker"),
         ("brilliant", "convex-64"),
         ("brilliant", "walk-8+tracker"),
+        ("brilliant", "walk-8+split"),
+        ("sapphire", "convex-4+split"),
         ("brilliant", "walk-64"),
         ("step_cut", "walk-4+3"),
         ("brilliant", "triangles-1+3"),

@@ -7,7 +7,7 @@ use crate::{RenderError, Settings};
 use glam::{Vec3, Vec4};
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
-use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_NONE};
+use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit};
 use lapidary_convex_walk::{self as convex_walk, CONVEX_WALK_STEPS};
 use lapidary_plan::{Effect, Geometry};
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
@@ -151,6 +151,25 @@ impl<'a> Entry<'a> {
 }
 
 impl Place<'_> {
+    /// `gem_hit_both` of the recipes, for two rays by position and direction.
+    pub(super) fn hit_both(&mut self, ray: (Vec3, Vec3), other: &mut Self, ray_other: (Vec3, Vec3)) -> [Hit; 2] {
+        let (Self::Walk { stone, face, position: start }, Self::Walk { face: face_other, position: start_other, .. }) =
+            (&mut *self, &mut *other)
+        else {
+            return [self.hit(ray.0, ray.1), other.hit(ray_other.0, ray_other.1)];
+        };
+        let beyond = convex_trace::start(convex_walk::exit(*start, ray.1, stone.map.lower, stone.map.upper));
+        let mut also = convex_trace::start(CONVEX_TRACE_FAR);
+        let nearest = walk(stone, beyond, (*start, ray.1), *face, &mut |candidate| {
+            let plane = stone.convex.planes[candidate as usize];
+            also = convex_trace::step(also, *start_other, ray_other.1, plane, candidate, *face_other);
+        });
+        if also.face != nearest.face {
+            also = walk(stone, also, (*start_other, ray_other.1), *face_other, &mut |_| {});
+        }
+        [met(stone, face, start, ray, nearest), met(stone, face_other, start_other, ray_other, also)]
+    }
+
     /// `gem_hit` of the recipes.
     pub(super) fn hit(&mut self, position: Vec3, direction: Vec3) -> Hit {
         match self {
@@ -190,33 +209,11 @@ impl Place<'_> {
                     facet: Some(u64::from(nearest.face)),
                 }
             }
-            Self::Walk { stone: Walked { convex, map, centre }, face, position: start } => {
-                let mut nearest = convex_trace::start(convex_walk::exit(*start, direction, map.lower, map.upper));
-                let mut words = 0;
-                while words < CONVEX_WALK_STEPS {
-                    let before = nearest.face;
-                    for (number, candidate) in (0..).zip(map.candidates(*start + nearest.distance * direction)) {
-                        // Two candidates a word.
-                        words += number % 2;
-                        let plane = convex.planes[candidate as usize];
-                        nearest = convex_trace::step(nearest, *start, direction, plane, candidate, *face);
-                    }
-                    if nearest.face == before {
-                        break;
-                    }
-                }
-                if nearest.face == CONVEX_TRACE_NONE {
-                    return Hit::none(position, direction);
-                }
-                let plane = convex.planes[nearest.face as usize];
-                *face = nearest.face;
-                *start = convex_trace::point(*start, direction, nearest.distance, plane);
-                Hit {
-                    point: *start + *centre,
-                    normal: -plane.truncate(),
-                    distance: nearest.distance,
-                    facet: Some(u64::from(nearest.face)),
-                }
+            Self::Walk { stone, face, position: start } => {
+                let beyond =
+                    convex_trace::start(convex_walk::exit(*start, direction, stone.map.lower, stone.map.upper));
+                let nearest = walk(stone, beyond, (*start, direction), *face, &mut |_| {});
+                met(stone, face, start, (position, direction), nearest)
             }
             Self::Triangles { bvh, triangle } => {
                 let nearest = traversal::trace_all(
@@ -234,6 +231,54 @@ impl Place<'_> {
                 triangle_hit(&bvh.corners, nearest, triangle, position, direction)
             }
         }
+    }
+}
+
+/// `gem_walk` of the recipe `gem_walk`; `tested` also gets the number of each plane that is tested.
+fn walk(
+    Walked { convex, map, .. }: &Walked,
+    so_far: ConvexTraceHit,
+    (start, direction): (Vec3, Vec3),
+    left: u32,
+    tested: &mut dyn FnMut(u32),
+) -> ConvexTraceHit {
+    let mut nearest = so_far;
+    let mut words = 0;
+    while words < CONVEX_WALK_STEPS {
+        let before = nearest.face;
+        for (number, candidate) in (0..).zip(map.candidates(start + nearest.distance * direction)) {
+            // Two candidates a word.
+            words += number % 2;
+            let plane = convex.planes[candidate as usize];
+            nearest = convex_trace::step(nearest, start, direction, plane, candidate, left);
+            tested(candidate);
+        }
+        if nearest.face == before {
+            break;
+        }
+    }
+    nearest
+}
+
+/// `gem_met` of the recipe `gem_walk`.
+fn met(
+    Walked { convex, centre, .. }: &Walked,
+    face: &mut u32,
+    start: &mut Vec3,
+    (position, direction): (Vec3, Vec3),
+    nearest: ConvexTraceHit,
+) -> Hit {
+    if nearest.face == CONVEX_TRACE_NONE {
+        return Hit::none(position, direction);
+    }
+    let plane = convex.planes[nearest.face as usize];
+    *face = nearest.face;
+    *start = convex_trace::point(*start, direction, nearest.distance, plane);
+    Hit {
+        point: *start + *centre,
+        normal: -plane.truncate(),
+        distance: nearest.distance,
+        facet: Some(u64::from(nearest.face)),
     }
 }
 

@@ -14,7 +14,7 @@ pub use surface::{SurfacePoint, Viewer};
 
 use crate as render;
 use crate::{GemMaterial, GemWavelength, Settings};
-use geometry::{Entry, Hit, Place};
+use geometry::{Entry, Hit};
 use glam::{Mat3, UVec2, Vec3, Vec4Swizzles as _};
 use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
@@ -175,10 +175,12 @@ impl<'a> Shading<'a> {
         self.settings.gem.distance_limit.is_some() && self.world_length(travelled) > self.material.distance_limit
     }
 
-    /// Follows a ray to its next facet. The callers stop where it ends; the recipe's loops
-    /// continue, but no longer change such a ray.
-    fn next(&self, ray: &mut Ray, place: &mut Place<'_>) -> Hit {
-        let hit = place.hit(ray.position, ray.direction);
+    /// Takes a ray as far as its next facet. Returns whether it is followed there. The callers stop
+    /// where it ends; the recipe's loops continue, but no longer change such a ray.
+    fn arrive(&self, ray: &mut Ray, hit: &Hit) -> bool {
+        if !ray.followed {
+            return false;
+        }
         ray.travelled += hit.distance;
         ray.followed = hit.facet.is_some() && !self.ends(ray.travelled);
         if ray.followed {
@@ -186,7 +188,7 @@ impl<'a> Shading<'a> {
         } else {
             ray.events.push(Event { facet: None, total: 0 });
         }
-        hit
+        ray.followed
     }
 
     fn reflect(&self, ray: &mut Ray, hit: &Hit) {
@@ -204,8 +206,8 @@ impl<'a> Shading<'a> {
             if !ray.followed {
                 break;
             }
-            let hit = self.next(&mut ray, &mut place);
-            if !ray.followed {
+            let hit = place.hit(ray.position, ray.direction);
+            if !self.arrive(&mut ray, &hit) {
                 break;
             }
             let exit = exit(ray.direction, hit.normal, index);
@@ -236,8 +238,8 @@ impl<'a> Shading<'a> {
             if !ray.followed {
                 break;
             }
-            let hit = self.next(&mut ray, &mut place);
-            if !ray.followed {
+            let hit = place.hit(ray.position, ray.direction);
+            if !self.arrive(&mut ray, &hit) {
                 break;
             }
             let red = exit(dispersion::direction(ray.direction, gradient, offsets.x), hit.normal, indices.x);
@@ -261,6 +263,60 @@ impl<'a> Shading<'a> {
         ray
     }
 
+    fn environment_red_green(&self, red: Vec3, green: Vec3) -> Vec3 {
+        Vec3::new(self.environment(red).x, self.environment(green).y, 0.0)
+    }
+
+    fn environment_blue(&self, blue: Vec3) -> Vec3 {
+        Vec3::new(0.0, 0.0, self.environment(blue).z)
+    }
+
+    /// Returns green's ray, which carries red as well, and blue's.
+    fn trace_split(&self, entry: &Entry<'_>, direction: Vec3) -> [Ray; 2] {
+        let indices = self.material.channel_indices;
+        let offset = indices.x - indices.y;
+        let [mut place, mut place_blue] = [entry.enter(), entry.enter()];
+        let inside = |index: f32| refraction::refract(direction, entry.face_normal, index).direction;
+        let mut ray = Ray::new(entry.position, inside(indices.y));
+        let mut blue = Ray::new(entry.position, inside(indices.z));
+        ray.throughput = Vec3::new(1.0, 1.0, 0.0);
+        blue.throughput = Vec3::Z;
+        let mut gradient = dispersion::enter(direction, entry.face_normal, indices.y);
+        for _ in 0..self.settings.rung.hits() {
+            if !ray.followed && !blue.followed {
+                break;
+            }
+            let [hit, hit_blue] =
+                place.hit_both((ray.position, ray.direction), &mut place_blue, (blue.position, blue.direction));
+            if self.arrive(&mut ray, &hit) {
+                let red = exit(dispersion::direction(ray.direction, gradient, offset), hit.normal, indices.x);
+                let green = exit(ray.direction, hit.normal, indices.y);
+                let total = u8::from(red.share == 0.0) | u8::from(green.share == 0.0) << 1;
+                ray.events.push(Event { facet: hit.facet, total });
+                if red.share > 0.0 || green.share > 0.0 {
+                    let share = Vec3::new(red.share, green.share, 0.0);
+                    ray.leave(share, self.environment_red_green(red.direction, green.direction));
+                }
+                self.reflect(&mut ray, &hit);
+                gradient = dispersion::reflect(gradient, hit.normal);
+            }
+            if self.arrive(&mut blue, &hit_blue) {
+                let exit = exit(blue.direction, hit_blue.normal, indices.z);
+                blue.events.push(Event { facet: hit_blue.facet, total: u8::from(exit.share == 0.0) });
+                if exit.share > 0.0 {
+                    blue.leave(Vec3::new(0.0, 0.0, exit.share), self.environment_blue(exit.direction));
+                }
+                self.reflect(&mut blue, &hit_blue);
+            }
+        }
+        if self.settings.gem.rest_from_environment {
+            let red = dispersion::direction(ray.direction, gradient, offset);
+            ray.end(self.environment_red_green(red, ray.direction));
+            blue.end(self.environment_blue(blue.direction));
+        }
+        [ray, blue]
+    }
+
     fn environment_paper(&self, red: Vec3, spread: Vec3, travelled_inside: f32) -> Vec3 {
         let travelled = self.world_length(travelled_inside);
         let strength = self.material.dispersion_strength;
@@ -281,8 +337,8 @@ impl<'a> Shading<'a> {
             if !ray.followed {
                 break;
             }
-            let hit = self.next(&mut ray, &mut place);
-            if !ray.followed {
+            let hit = place.hit(ray.position, ray.direction);
+            if !self.arrive(&mut ray, &hit) {
                 break;
             }
             let exit = exit(ray.direction, hit.normal, index);
@@ -328,18 +384,18 @@ impl<'a> Shading<'a> {
             return Pixel { radiance: surface + inside * self.base_color(), rays };
         }
         let mut reflectance = Vec3::splat(fresnel::dielectric(cosine, self.material.index));
-        let ray = match self.settings.rung.spectrum() {
-            Spectrum::Paper => transmits.then(|| self.trace_paper(&entry, direction)),
-            Spectrum::Tracker => {
-                reflectance = self.reflectance_channels(cosine);
-                transmits.then(|| self.trace_tracked(&entry, direction))
-            }
-            Spectrum::One | Spectrum::Separate(_) => {
-                transmits.then(|| self.trace(&entry, direction, self.material.index))
-            }
+        if matches!(self.settings.rung.spectrum(), Spectrum::Tracker | Spectrum::Split) {
+            reflectance = self.reflectance_channels(cosine);
+        }
+        let traced = match self.settings.rung.spectrum() {
+            _ if !transmits => Vec::new(),
+            Spectrum::Paper => vec![self.trace_paper(&entry, direction)],
+            Spectrum::Tracker => vec![self.trace_tracked(&entry, direction)],
+            Spectrum::Split => self.trace_split(&entry, direction).into(),
+            Spectrum::One | Spectrum::Separate(_) => vec![self.trace(&entry, direction, self.material.index)],
         };
-        let inside = ray.as_ref().map_or(Vec3::ZERO, |ray| ray.radiance);
-        rays.extend(ray.map(|ray| ray.events));
+        let inside: Vec3 = traced.iter().map(|ray| ray.radiance).sum();
+        rays.extend(traced.into_iter().map(|ray| ray.events));
         let radiance = reflectance * reflected + (1.0 - reflectance) * self.base_color() * inside;
         Pixel { radiance, rays }
     }

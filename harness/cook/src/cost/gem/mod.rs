@@ -41,7 +41,7 @@ pub const FILLED: &str = "filled";
 /// hierarchy and the loop over triangles give the same pictures as the walk, so a few rungs are
 /// enough to show their cost; those of the hierarchy include colours, which make it a twentieth
 /// slower.
-pub const RUNGS: [&str; 49] = [
+pub const RUNGS: [&str; 51] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -70,11 +70,13 @@ pub const RUNGS: [&str; 49] = [
     "walk-4",
     "walk-4+paper",
     "walk-4+tracker",
+    "walk-4+split",
     "walk-4+3",
     "walk-4+31",
     "walk-8",
     "walk-8+paper",
     "walk-8+tracker",
+    "walk-8+split",
     "walk-8+3",
     "walk-8+31",
     "walk-16+tracker",

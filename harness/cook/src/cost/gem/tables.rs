@@ -414,6 +414,7 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
         let marker = match drawn.map(Rung::spectrum) {
             Some(Spectrum::Paper) => Marker::Ring,
             Some(Spectrum::Tracker) => Marker::Triangle,
+            Some(Spectrum::Split) => Marker::Square,
             Some(Spectrum::Separate(_)) => Marker::Cross,
             _ => Marker::Disc,
         };
