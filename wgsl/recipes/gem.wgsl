@@ -90,30 +90,23 @@ fn gem_enter(input: GemVertex) -> GemPlace {
 
 // The hit on a tile of the plane. A ray misses the next plane if a tile has turned it away from
 // that plane or parallel to it.
-fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
+fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     let plane = (*place).plane;
-    let hit = proxy_geometry_intersect(position, direction, plane.origin, (*place).normal);
+    let hit = proxy_geometry_intersect(ray.position, ray.direction, plane.origin, (*place).normal);
     if (!hit.hit) {
-        return GemHit(position, -direction, 0.0f, false);
+        return GemHit(ray.position, -ray.direction, 0.0f, false);
     }
     let coordinates = proxy_geometry_coordinates(hit.point, plane.origin, plane.edge_first, plane.edge_second);
     let facet = proxy_geometry_facet(plane, proxy_geometry_cell(coordinates));
-    let normal = proxy_geometry_facet_normal((*place).centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, direction);
+    let normal = proxy_geometry_facet_normal((*place).centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, ray.direction);
     (*place).plane = proxy_geometry_next_plane((*place).centre, facet);
     return GemHit(hit.point, normal, hit.distance, true);
 }
 
 // Each ray has a search of its own.
-fn gem_hit_both(
-    place: ptr<function, GemPlace>,
-    position: vec3f,
-    direction: vec3f,
-    place_other: ptr<function, GemPlace>,
-    position_other: vec3f,
-    direction_other: vec3f,
-) -> GemHits {
-    let first = gem_hit(place, position, direction);
-    let second = gem_hit(place_other, position_other, direction_other);
+fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
+    let first = gem_hit(place, ray);
+    let second = gem_hit(place_other, other);
     return GemHits(first, second);
 }
 

@@ -59,27 +59,20 @@ fn gem_enter(input: GemVertex) -> GemPlace {
     return GemPlace(input.triangle);
 }
 
-fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
-    let nearest = trace_nearest(position, direction, (*place).triangle);
+fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
+    let nearest = trace_nearest(ray.position, ray.direction, (*place).triangle);
     if (nearest.triangle == BVH_TRACE_NONE) {
-        return GemHit(position, -direction, 0.0f, false);
+        return GemHit(ray.position, -ray.direction, 0.0f, false);
     }
     (*place).triangle = nearest.triangle;
     let normal = gem_face_normal(nearest.triangle);
-    return GemHit(position + nearest.distance * direction, -normal, nearest.distance, true);
+    return GemHit(ray.position + nearest.distance * ray.direction, -normal, nearest.distance, true);
 }
 
 // Each ray has a search of its own.
-fn gem_hit_both(
-    place: ptr<function, GemPlace>,
-    position: vec3f,
-    direction: vec3f,
-    place_other: ptr<function, GemPlace>,
-    position_other: vec3f,
-    direction_other: vec3f,
-) -> GemHits {
-    let first = gem_hit(place, position, direction);
-    let second = gem_hit(place_other, position_other, direction_other);
+fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
+    let first = gem_hit(place, ray);
+    let second = gem_hit(place_other, other);
     return GemHits(first, second);
 }
 

@@ -51,31 +51,24 @@ fn gem_enter(input: GemVertex) -> GemPlace {
     return GemPlace(input.face);
 }
 
-fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
+fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     var nearest = convex_trace_start(CONVEX_TRACE_FAR);
     let count = arrayLength(&planes);
     for (var face = 0u; face < count; face++) {
-        nearest = convex_trace_step(nearest, position, direction, planes[face], face, (*place).face);
+        nearest = convex_trace_step(nearest, ray.position, ray.direction, planes[face], face, (*place).face);
     }
     if (nearest.face >= count) {
-        return GemHit(position, -direction, 0.0f, false);
+        return GemHit(ray.position, -ray.direction, 0.0f, false);
     }
     (*place).face = nearest.face;
     let plane = planes[nearest.face];
-    return GemHit(convex_trace_point(position, direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
+    return GemHit(convex_trace_point(ray.position, ray.direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
 
 // Each ray has a search of its own.
-fn gem_hit_both(
-    place: ptr<function, GemPlace>,
-    position: vec3f,
-    direction: vec3f,
-    place_other: ptr<function, GemPlace>,
-    position_other: vec3f,
-    direction_other: vec3f,
-) -> GemHits {
-    let first = gem_hit(place, position, direction);
-    let second = gem_hit(place_other, position_other, direction_other);
+fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
+    let first = gem_hit(place, ray);
+    let second = gem_hit(place_other, other);
     return GemHits(first, second);
 }
 

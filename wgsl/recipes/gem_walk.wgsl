@@ -1,7 +1,7 @@
 // gem_walk: a convex stone by its exact facets: each ray inside finds its next facet in a few steps over a map of the facets by direction.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the module convex_walk.
-// requires: absorption, convex_trace, convex_walk, dispersion, environment, fresnel, proxy_geometry, refraction
+// requires: absorption, convex_trace, convex_walk, dispersion, environment, fresnel, proxy_geometry, ray_footprint, refraction
 // parts: mesh, surroundings, gem_shading
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes and their map, made once for
@@ -10,6 +10,9 @@
 // Light passes through the stone; if off, only its surface reflects. Called for by
 // KHR_materials_transmission.
 override EFFECT_CONVEX_TRACE: bool = true;
+// Facets' edges inside are smoothed from one sample per pixel: gem_footprint_fragment also writes
+// shares of the four neighbours, with which gem_resolve mixes them. Called for by the user.
+override EFFECT_FOOTPRINT: bool = false;
 
 // The stone's place and a box around it.
 struct GemStone {
@@ -67,18 +70,114 @@ fn gem_enter(input: GemVertex) -> GemPlace {
     return GemPlace(input.face, input.position - stone.centre);
 }
 
+//+convex_trace,footprint {
+// Throughput, of the brightest channel, from which on an edge counts in full. What a pixel has
+// gathered before the edge is its own, and a neighbour's is no better: with less light to come, less
+// is taken from it.
+const GEM_FOOTPRINT_FULL: f32 = 0.5f;
+
+// A pixel's footprint on its ray, and what it has found of edges.
+struct GemFootprint {
+    // Change of the point on the ray from this pixel to the next, to the right and down.
+    right: vec3f,
+    down: vec3f,
+    // Distance of the eye from the facet that it sees.
+    distance: f32,
+    // Shares of the neighbours to the right, left, below and above, and the pixel's own.
+    neighbours: vec4f,
+    own: f32,
+    // The plane that the ray would meet next.
+    runner_up: ConvexTraceHit,
+}
+
+var<private> gem_footprint: GemFootprint;
+
+// Derivatives need uniform control flow: before anything else in the fragment stage.
+fn gem_footprint_start(input: GemVertex) {
+    let far = convex_trace_start(CONVEX_TRACE_FAR);
+    let away = distance(input.position, gem_eye(input));
+    gem_footprint = GemFootprint(dpdx(input.position), dpdy(input.position), away, vec4f(0.0f), 1.0f, far);
+    // The edges of the facet that the eye sees are those to the candidates of its cell.
+    let point = input.position - stone.centre;
+    var cell = gem_cell(point);
+    for (var step = 0u; step < CONVEX_WALK_STEPS; step++) {
+        let word = facet_map[cell];
+        let more = word >= CONVEX_WALK_MORE;
+        let rest = (word >> CONVEX_WALK_SHIFT) & CONVEX_WALK_PLACE;
+        let first = word & CONVEX_WALK_FACE;
+        gem_footprint_front(input.face, point, first);
+        if (!more) {
+            if (rest != first) {
+                gem_footprint_front(input.face, point, rest);
+            }
+            break;
+        }
+        cell = rest;
+    }
+}
+
+// The edge between the facet that the eye sees and another. The depth of a point of the one below the
+// plane of the other is linear in the pixel.
+fn gem_footprint_front(seen: u32, point: vec3f, face: u32) {
+    if (face != seen) {
+        let plane = planes[face];
+        let depth = max(plane.w - dot(plane.xyz, point), 0.0f);
+        gem_footprint_add(vec3f(depth, dot(plane.xyz, gem_footprint.right), dot(plane.xyz, gem_footprint.down)), 1.0f);
+    }
+}
+
+fn gem_footprint_add(edge: vec3f, seen: f32) {
+    let share = gem_footprint.own * seen * ray_footprint_share(edge);
+    if (share > 0.0f) {
+        gem_footprint.neighbours += ray_footprint_neighbours(edge, share);
+        gem_footprint.own -= share;
+    }
+}
+
+// Updates the runner-up with one plane, before the walk tests it.
+fn gem_footprint_test(nearest: ConvexTraceHit, start: vec3f, direction: vec3f, face: u32, left: u32) {
+    let hit = convex_trace_step(convex_trace_start(CONVEX_TRACE_FAR), start, direction, planes[face], face, left);
+    gem_footprint.runner_up = convex_trace_runner_up(nearest, gem_footprint.runner_up, hit);
+}
+
+// Counts the edge between the plane that a ray meets and the runner-up.
+fn gem_footprint_hit(ray: GemRay, nearest: ConvexTraceHit) {
+    let runner_up = gem_footprint.runner_up;
+    gem_footprint.runner_up = convex_trace_start(CONVEX_TRACE_FAR);
+    if (!ray.followed || nearest.face == CONVEX_TRACE_NONE) {
+        return;
+    }
+    let normal = planes[nearest.face].xyz;
+    if (runner_up.face != CONVEX_TRACE_NONE) {
+        let gap = runner_up.distance - nearest.distance;
+        let edge = ray_footprint_edge(ray.direction, gem_footprint.right, gem_footprint.down, normal, planes[runner_up.face].xyz, gap);
+        let growth = ray_footprint_growth(gem_footprint.distance, ray.travelled + nearest.distance, material.index);
+        let throughput = max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
+        gem_footprint_add(vec3f(edge.x, growth * edge.yz), min(throughput / GEM_FOOTPRINT_FULL, 1.0f));
+    }
+    gem_footprint.right = refraction_reflect(gem_footprint.right, normal);
+    gem_footprint.down = refraction_reflect(gem_footprint.down, normal);
+}
+//+convex_trace,footprint }
+
 // Walks from a point that is not inside the stone, the hit so far, to the facet that the ray meets.
-fn gem_walk(so_far: ConvexTraceHit, first_cell: u32, start: vec3f, direction: vec3f, left: u32) -> ConvexTraceHit {
+fn gem_walk(so_far: ConvexTraceHit, start: vec3f, direction: vec3f, left: u32) -> ConvexTraceHit {
     var nearest = so_far;
     var before = nearest.face;
-    var cell = first_cell;
+    var cell = gem_cell(start + nearest.distance * direction);
     for (var step = 0u; step < CONVEX_WALK_STEPS; step++) {
         let word = facet_map[cell];
         let more = word >= CONVEX_WALK_MORE;
         let rest = (word >> CONVEX_WALK_SHIFT) & CONVEX_WALK_PLACE;
         let first = word & CONVEX_WALK_FACE;
         let second = select(rest, first, more);
+        if (EFFECT_FOOTPRINT) {
+            gem_footprint_test(nearest, start, direction, first, left);
+        }
         nearest = convex_trace_step(nearest, start, direction, planes[first], first, left);
+        if (EFFECT_FOOTPRINT) {
+            gem_footprint_test(nearest, start, direction, second, left);
+        }
         nearest = convex_trace_step(nearest, start, direction, planes[second], second, left);
         if (more) {
             cell = rest;
@@ -98,51 +197,53 @@ fn gem_cell(point: vec3f) -> u32 {
 }
 
 // Moves a ray's place to the facet that it meets.
-fn gem_met(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f, nearest: ConvexTraceHit) -> GemHit {
+fn gem_met(place: ptr<function, GemPlace>, ray: GemRay, nearest: ConvexTraceHit) -> GemHit {
     if (nearest.face == CONVEX_TRACE_NONE) {
-        return GemHit(position, -direction, 0.0f, false);
+        return GemHit(ray.position, -ray.direction, 0.0f, false);
     }
     let plane = planes[nearest.face];
-    *place = GemPlace(nearest.face, convex_trace_point((*place).position, direction, nearest.distance, plane));
+    *place = GemPlace(nearest.face, convex_trace_point((*place).position, ray.direction, nearest.distance, plane));
     return GemHit((*place).position + stone.centre, -plane.xyz, nearest.distance, true);
 }
 
-fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
+fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     let start = (*place).position;
-    let beyond = convex_trace_start(convex_walk_exit(start, direction, stone.lower, stone.upper));
-    let cell = gem_cell(start + beyond.distance * direction);
-    return gem_met(place, position, direction, gem_walk(beyond, cell, start, direction, (*place).face));
+    let beyond = convex_trace_start(convex_walk_exit(start, ray.direction, stone.lower, stone.upper));
+    let nearest = gem_walk(beyond, start, ray.direction, (*place).face);
+    if (EFFECT_FOOTPRINT) {
+        gem_footprint_hit(ray, nearest);
+    }
+    return gem_met(place, ray, nearest);
 }
 
 // The walk of the first ray, whose candidates the second ray is tested against as well. If that finds
 // another facet for it, it walks on from there by itself. It may then have missed a facet that is
 // met by neither ray's candidates: a sliver between two edges.
-fn gem_hit_both(
-    place: ptr<function, GemPlace>,
-    position: vec3f,
-    direction: vec3f,
-    place_other: ptr<function, GemPlace>,
-    position_other: vec3f,
-    direction_other: vec3f,
-) -> GemHits {
+fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
     let start = (*place).position;
     let left = (*place).face;
     let start_other = (*place_other).position;
     let left_other = (*place_other).face;
-    var nearest = convex_trace_start(convex_walk_exit(start, direction, stone.lower, stone.upper));
-    var other = convex_trace_start(CONVEX_TRACE_FAR);
+    var nearest = convex_trace_start(convex_walk_exit(start, ray.direction, stone.lower, stone.upper));
+    var nearest_other = convex_trace_start(CONVEX_TRACE_FAR);
     var before = nearest.face;
-    var cell = gem_cell(start + nearest.distance * direction);
+    var cell = gem_cell(start + nearest.distance * ray.direction);
     for (var step = 0u; step < CONVEX_WALK_STEPS; step++) {
         let word = facet_map[cell];
         let more = word >= CONVEX_WALK_MORE;
         let rest = (word >> CONVEX_WALK_SHIFT) & CONVEX_WALK_PLACE;
         let first = word & CONVEX_WALK_FACE;
         let second = select(rest, first, more);
-        nearest = convex_trace_step(nearest, start, direction, planes[first], first, left);
-        nearest = convex_trace_step(nearest, start, direction, planes[second], second, left);
-        other = convex_trace_step(other, start_other, direction_other, planes[first], first, left_other);
-        other = convex_trace_step(other, start_other, direction_other, planes[second], second, left_other);
+        if (EFFECT_FOOTPRINT) {
+            gem_footprint_test(nearest, start, ray.direction, first, left);
+        }
+        nearest = convex_trace_step(nearest, start, ray.direction, planes[first], first, left);
+        if (EFFECT_FOOTPRINT) {
+            gem_footprint_test(nearest, start, ray.direction, second, left);
+        }
+        nearest = convex_trace_step(nearest, start, ray.direction, planes[second], second, left);
+        nearest_other = convex_trace_step(nearest_other, start_other, other.direction, planes[first], first, left_other);
+        nearest_other = convex_trace_step(nearest_other, start_other, other.direction, planes[second], second, left_other);
         if (more) {
             cell = rest;
         } else {
@@ -150,18 +251,23 @@ fn gem_hit_both(
                 break;
             }
             before = nearest.face;
-            cell = gem_cell(start + nearest.distance * direction);
+            cell = gem_cell(start + nearest.distance * ray.direction);
         }
     }
-    if (other.face != nearest.face) {
-        let point = start_other + other.distance * direction_other;
-        other = gem_walk(other, gem_cell(point), start_other, direction_other, left_other);
+    if (EFFECT_FOOTPRINT) {
+        // The first ray stands for both.
+        gem_footprint_hit(ray, nearest);
     }
-    return GemHits(gem_met(place, position, direction, nearest), gem_met(place_other, position_other, direction_other, other));
+    if (nearest_other.face != nearest.face) {
+        nearest_other = gem_walk(nearest_other, start_other, other.direction, left_other);
+        if (EFFECT_FOOTPRINT) {
+            gem_footprint.runner_up = convex_trace_start(CONVEX_TRACE_FAR);
+        }
+    }
+    return GemHits(gem_met(place, ray, nearest), gem_met(place_other, other, nearest_other));
 }
 
-@fragment
-fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
+fn gem_seen(input: GemVertex) -> vec4f {
     let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);  //+convex_trace
     //-convex_trace let radiance = gem_radiance(input);
     if (EFFECT_CONVEX_TRACE) {
@@ -171,6 +277,32 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
         return vec4f(radiance.surface + radiance.inside, 1.0f);
     }
     return vec4f(radiance.surface, 1.0f);
+}
+
+@fragment
+fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
+    return gem_seen(input);
+}
+
+// The picture and, for gem_resolve, each pixel's shares of its neighbours.
+struct GemFootprintTargets {
+    @location(0) radiance: vec4f,
+    // Of the neighbours to the right, left, below and above; eight bits suffice.
+    @location(1) neighbours: vec4f,
+}
+
+// With EFFECT_FOOTPRINT in place of gem_fragment. Clear both targets to 0.
+@fragment
+fn gem_footprint_fragment(input: GemVertex) -> GemFootprintTargets {
+    var neighbours = vec4f(0.0f);
+    if (EFFECT_FOOTPRINT && EFFECT_CONVEX_TRACE) {
+        gem_footprint_start(input);  //+convex_trace
+    }
+    let radiance = gem_seen(input);
+    if (EFFECT_FOOTPRINT && EFFECT_CONVEX_TRACE) {
+        neighbours = gem_footprint.neighbours;  //+convex_trace
+    }
+    return GemFootprintTargets(radiance, neighbours);
 }
 
 // For a deferred renderer, in place of gem_fragment; gem_composite shows how the lighting pass uses

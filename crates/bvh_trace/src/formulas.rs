@@ -366,7 +366,9 @@ fn to_object_formula() -> Formula {
     .edge("stretched along one axis", |(_, _, _, x, y, _)| x.length() > 2.0 * y.length())
     .edge("of another size", |(_, _, _, x, y, z)| x.length().max(y.length()).max(z.length()) < 0.01)
     .invariant("a unit direction", |_, ray: BvhTraceObjectRay| {
-        near("length", ray.direction.as_dvec3().length(), 1.0, 16.0 / f64::from(1 << 24))
+        // Half of a square's and two sums' last places, 4.5 of the root and 2.5 of the quotient, of
+        // up to 2^-23 each, and what they are of one another.
+        near("length", ray.direction.as_dvec3().length(), 1.0, 8.75 / f64::from(1 << 23))
     })
     .build()
 }

@@ -180,6 +180,61 @@ fn step_formula() -> Formula {
         .build()
 }
 
+/// Draws three hits: the nearest, a farther one, and another before, between or behind them, beside
+/// one of them, or one of them again; not every one has a face.
+fn three_hits(draws: &mut Draws<'_>) -> (ConvexTraceHit, ConvexTraceHit, ConvexTraceHit) {
+    let size = size(draws);
+    let nearest = match draws.below(8) {
+        0 => mirror::start(size),
+        1 => ConvexTraceHit { distance: 0.0, face: 1 },
+        _ => ConvexTraceHit { distance: size * draws.between(0.1, 1.0), face: 1 },
+    };
+    let runner_up = match draws.below(6) {
+        0 => mirror::start(CONVEX_TRACE_FAR),
+        1 => ConvexTraceHit { face: 2, ..nearest },
+        _ => ConvexTraceHit { distance: nearest.distance + size * draws.between(0.01, 1.0), face: 2 },
+    };
+    let hit = match draws.below(10) {
+        0 if nearest.face != CONVEX_TRACE_NONE => nearest,
+        1 if runner_up.face != CONVEX_TRACE_NONE => runner_up,
+        2 => mirror::start(CONVEX_TRACE_FAR),
+        3 => ConvexTraceHit { face: 3, ..nearest },
+        4 => ConvexTraceHit { face: 3, ..runner_up },
+        5 => ConvexTraceHit { distance: draws.nudged(nearest.distance, 4).max(0.0), face: 3 },
+        6 => ConvexTraceHit { distance: draws.nudged(runner_up.distance, 4).max(0.0), face: 3 },
+        7 => ConvexTraceHit { distance: 0.0, face: 3 },
+        _ => ConvexTraceHit { distance: size * draws.between(0.0, 2.0), face: 3 },
+    };
+    (nearest, runner_up, hit)
+}
+
+fn runner_up_formula() -> Formula {
+    type Three = (ConvexTraceHit, ConvexTraceHit, ConvexTraceHit);
+    formula(M, "convex_trace_runner_up", mirror::runner_up, oracle::runner_up, three_hits)
+        .edge("nothing hit so far", |(nearest, ..): Three| nearest.face == CONVEX_TRACE_NONE)
+        .edge("no runner-up so far", |(_, runner_up, _): Three| runner_up.face == CONVEX_TRACE_NONE)
+        .edge("nothing is hit", |(.., hit): Three| hit.face == CONVEX_TRACE_NONE)
+        .edge("the nearest again", |(nearest, _, hit): Three| hit == nearest)
+        .edge("the runner-up again", |(_, runner_up, hit): Three| hit == runner_up)
+        .edge("a tie with the nearest", |(nearest, _, hit): Three| {
+            hit.distance == nearest.distance && hit.face != nearest.face
+        })
+        .edge("a tie with the runner-up", |(_, runner_up, hit): Three| {
+            hit.distance == runner_up.distance && hit.face != runner_up.face
+        })
+        .edge("the nearest is overtaken", |(nearest, _, hit): Three| hit.distance < nearest.distance)
+        .edge("between the two", |(nearest, runner_up, hit): Three| {
+            nearest.distance < hit.distance && hit.distance < runner_up.distance
+        })
+        .invariant("it is one of the three, no nearer than the nearest left", |(nearest, runner_up, hit): Three, it| {
+            let given: ConvexTraceHit = it;
+            let least = nearest.distance.min(hit.distance);
+            let known = [nearest, runner_up, hit].contains(&given) && given.distance >= least;
+            if known { Ok(()) } else { Err(format!("{given:?}")) }
+        })
+        .build()
+}
+
 /// Draws a plane well ahead or behind, or around the epsilon from the origin, where its distance is
 /// exact to a thousandth, and a hit so far that is nearer, farther, or at the same distance.
 fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32) {
@@ -238,6 +293,7 @@ fn functions() -> Vec<Formula> {
         .edge("no way to go", |(limit,)| limit == 0.0)
         .build(),
         step_formula(),
+        runner_up_formula(),
         formula(M, "convex_trace_step_naive", mirror::step_naive, oracle::step_naive, benign_step).benign(1e-3).build(),
         formula(M, "convex_trace_point", mirror::point, oracle::point, way_to_plane)
             .edge("no way to go", |(_, _, distance, _)| distance == 0.0)

@@ -67,6 +67,14 @@ pub fn step_naive(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: V
     hit
 }
 
+/// Updates the runner-up with one plane's own hit, before the nearest hit takes it up.
+pub fn runner_up(nearest: ConvexTraceHit, runner_up: ConvexTraceHit, hit: ConvexTraceHit) -> ConvexTraceHit {
+    let overtakes = hit.distance < nearest.distance;
+    let second = hit.distance < runner_up.distance && hit.face != nearest.face;
+    let kept = if second { hit } else { runner_up };
+    if overtakes { nearest } else { kept }
+}
+
 /// Returns the point at which a ray meets a plane, moved back onto the plane.
 pub fn point(position: Vec3, direction: Vec3, distance: f32, plane: Vec4) -> Vec3 {
     let point = position + distance * direction;

@@ -50,6 +50,16 @@ fn nearer(first: ConvexTraceHit, second: ConvexTraceHit) -> ConvexTraceHit {
     if second.distance < first.distance { second } else { first }
 }
 
+/// Sorts the hits by distance, each plane once, and returns the second; at equal distances the earlier.
+pub fn runner_up(nearest: ConvexTraceHit, runner_up: ConvexTraceHit, hit: ConvexTraceHit) -> ConvexTraceHit {
+    let mut hits = vec![nearest, runner_up];
+    if hit.face != nearest.face {
+        hits.push(hit);
+    }
+    hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    hits[1]
+}
+
 /// Returns the depth of a point inside a plane: the distance to the plane's foot point, along its
 /// normal.
 fn height(plane: DVec4, position: DVec3) -> f64 {

@@ -85,7 +85,7 @@ fn reach(edge: Vec3) -> f32 {
 }
 
 fn functions() -> Vec<Formula> {
-    let all = [vec![growth_formula()], edge_formulas(), vec![share_formula(), neighbours_formula()]];
+    let all = [vec![growth_formula()], edge_formulas(), vec![share_formula(), neighbours_formula(), mix_formula()]];
     all.into_iter().flatten().collect()
 }
 
@@ -193,6 +193,46 @@ fn neighbours_formula() -> Formula {
     .build()
 }
 
+/// A pixel, its four neighbours, and their shares.
+type Mixed = (Vec4, Vec4, Vec4, Vec4, Vec4, Vec4);
+
+/// Draws five pixels, dark or bright or alike, and shares of which some are 0.
+fn mixed(draws: &mut Draws<'_>) -> Mixed {
+    let size = draws.magnitude(-20, 20);
+    let pixel = |draws: &mut Draws<'_>| match draws.below(6) {
+        0 => Vec4::ZERO,
+        1 => Vec4::splat(size),
+        _ => size * Vec4::from_array([0, 1, 2, 3].map(|_| draws.between(0.001, 1.0))),
+    };
+    let [own, right, left, below, above] = [0, 1, 2, 3, 4].map(|_| pixel(draws));
+    let whole = if draws.below(6) == 0 { 1.0 } else { draws.between(0.01, 1.0) };
+    // One neighbour, two, or all.
+    let parts = match draws.below(4) {
+        0 => [1.0, 0.0, 0.0, 0.0],
+        1 => [0.0, 0.75, 0.25, 0.0],
+        2 => [0.0; 4],
+        _ => [0.25, 0.25, 0.125, 0.375],
+    };
+    (own, right, left, below, above, whole * Vec4::from_array(parts))
+}
+
+fn mix_formula() -> Formula {
+    formula(M, "ray_footprint_mix", mirror::mix, oracle::mix, mixed)
+        .edge("no shares", |(.., shares): Mixed| shares == Vec4::ZERO)
+        .edge("nothing of its own", |(.., shares): Mixed| shares.element_sum() == 1.0)
+        .edge("one neighbour", |(.., shares): Mixed| shares.x > 0.0 && shares.x == shares.element_sum())
+        .edge("a black pixel", |(own, .., shares): Mixed| own == Vec4::ZERO && shares != Vec4::ZERO)
+        .invariant("it lies between the five, but for rounding", |(own, right, left, below, above, _), pixel: Vec4| {
+            let others = [right, left, below, above];
+            let least = others.into_iter().fold(own, Vec4::min);
+            let most = others.into_iter().fold(own, Vec4::max);
+            let give = 8.0 * f32::EPSILON * most;
+            let within = pixel.cmpge(least - give).all() && pixel.cmple(most + give).all();
+            if within { Ok(()) } else { Err(format!("{pixel} of {least} to {most}")) }
+        })
+        .build()
+}
+
 /// Returns the promises of the `Outside:` lines.
 fn promises() -> Vec<Promise> {
     vec![
@@ -228,6 +268,21 @@ fn promises() -> Vec<Promise> {
             "an f below 0 counts as 0",
             |draws| (line(draws) * vec3(-1.0, 1.0, 1.0), draws.unit() as f32),
             |(edge, share): (Vec3, f32)| (vec3(0.0, edge.y, edge.z), share),
+        ),
+        finite("ray_footprint_mix", "finite for pixels up to 1e30 and shares up to 1e6", |draws| {
+            let pixel = |draws: &mut Draws<'_>| Vec4::from_array([0, 1, 2, 3].map(|_| draws.magnitude(-99, 99)));
+            let pixels = [0, 1, 2, 3, 4].map(|_| pixel(draws));
+            let shares = Vec4::from_array([0, 1, 2, 3].map(|_| draws.magnitude(-19, 19)));
+            (pixels[0], pixels[1], pixels[2], pixels[3], pixels[4], shares)
+        }),
+        holds(
+            "ray_footprint_mix",
+            "where shares add up to more than 1, the pixel itself counts below 0",
+            |draws| {
+                let own = Vec4::splat(draws.between(0.5, 1.0));
+                (own, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::splat(draws.between(0.3, 1.0)))
+            },
+            |_: Mixed, pixel: Vec4| that(pixel.max_element() < 0.0, || format!("{pixel}")),
         ),
     ]
 }

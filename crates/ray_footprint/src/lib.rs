@@ -74,3 +74,9 @@ pub fn neighbours(edge: Vec3, share: f32) -> Vec4 {
     }
     beyond * (share / sum)
 }
+
+/// Returns a pixel with its neighbours' shares mixed in.
+pub fn mix(own: Vec4, right: Vec4, left: Vec4, below: Vec4, above: Vec4, shares: Vec4) -> Vec4 {
+    let rest = 1.0 - (shares.x + shares.y + shares.z + shares.w);
+    rest * own + shares.x * right + shares.y * left + shares.z * below + shares.w * above
+}

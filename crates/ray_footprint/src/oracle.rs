@@ -49,3 +49,9 @@ pub fn neighbours(edge: DVec3, share: f64) -> DVec4 {
     let sum: f64 = heights.iter().sum();
     if sum == 0.0 { DVec4::ZERO } else { DVec4::from_array(heights.map(|height| share * height / sum)) }
 }
+
+/// The pixel, moved towards each neighbour by its share of their difference.
+pub fn mix(own: DVec4, right: DVec4, left: DVec4, below: DVec4, above: DVec4, shares: DVec4) -> DVec4 {
+    let neighbours = [right, left, below, above];
+    own + neighbours.into_iter().zip(shares.to_array()).map(|(other, share)| share * (other - own)).sum::<DVec4>()
+}

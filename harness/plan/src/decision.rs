@@ -131,6 +131,7 @@ impl Case<'_> {
             Effect::Absorption => self.absorption(),
             Effect::Dispersion => self.dispersion(),
             Effect::Instances => self.instances(),
+            Effect::Footprint => self.footprint(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::OpticalPath => self.optical_path(),
@@ -229,6 +230,21 @@ impl Case<'_> {
             None => off("shown once"),
             Some(copies) if self.is_gem() => on(format!("{} copies of one shape", copies.places.len())),
             Some(_) => off("drawn as one mesh: only clear stones are drawn by copies"),
+        }
+    }
+
+    fn footprint(&self) -> Answer {
+        match self.rung {
+            _ if !self.request.footprint => off("not asked for"),
+            Rung::Inside { geometry: Geometry::Walk, spectrum: Spectrum::Separate(count), .. } => {
+                off(format!("the rung {} follows {count} rays, each with edges of its own", self.rung))
+            }
+            Rung::Inside { geometry: Geometry::Walk, .. } => on("asked for"),
+            Rung::Inside { geometry, .. } => {
+                off(format!("the rung {} finds facets by {}, without a runner-up", self.rung, way_of(geometry)))
+            }
+            Rung::Surface => off(self.no_inside()),
+            _ => off(self.not_clear()),
         }
     }
 

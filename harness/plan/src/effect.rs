@@ -53,6 +53,8 @@ effects! {
     Dispersion = "dispersion", "EFFECT_DISPERSION";
     /// Copies of a clear stone, drawn in one call at places and in colours of their own.
     Instances = "instances", "EFFECT_INSTANCES";
+    /// Facets' edges inside a clear stone, smoothed from one sample per pixel.
+    Footprint = "footprint", "EFFECT_FOOTPRINT";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

@@ -53,6 +53,8 @@ pub struct Request<'a> {
     pub scattering: Option<Scattering>,
     /// Whether lights cast shadows on bodies that are drawn by their surface alone.
     pub shadows: bool,
+    /// Whether facets' edges inside clear stones are smoothed from one sample per pixel.
+    pub footprint: bool,
     /// The light around the scene.
     pub environment: &'a Environment,
     /// Factor applied to radiance before the tone curve.
@@ -70,6 +72,7 @@ impl Request<'_> {
             without: Effects::NONE,
             scattering: None,
             shadows: false,
+            footprint: false,
             environment: &Environment::Studio,
             exposure: 1.0,
         }

@@ -2,6 +2,7 @@
 
 use super::deferred::{self, DeferredPass};
 use super::display::DisplayPass;
+use super::footprint::{self, FootprintPass};
 use super::lighting::Lighting;
 use super::pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::shadows::Shadows;
@@ -58,8 +59,10 @@ impl Drawing {
         } else {
             None
         };
-        let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
         let [columns, rows] = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
+        let smooth = footprint::is_on(settings);
+        let footprint = smooth.then(|| FootprintPass::new(builder, [columns, rows])).transpose()?;
+        let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
         let depth = builder.target("depth", [columns, rows, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
         pass.prepare(builder);
         for tile in Tile::all(width, height, settings.samples) {
@@ -67,6 +70,8 @@ impl Drawing {
             let size = [tile.width * settings.samples, tile.height * settings.samples];
             if let Some(deferred) = &deferred {
                 deferred.draw(builder, &pass, view, display.samples, size);
+            } else if let Some(footprint) = &footprint {
+                footprint.draw(builder, &pass, view, (display.samples, depth), size);
             } else {
                 let target = SceneTarget { colors: vec![display.samples], depth, keep_depth: false, size };
                 pass.draw(builder, view.0, view.1, &target);
@@ -109,6 +114,10 @@ pub(super) fn scene_pass(
         let source = &*source.map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];
+        let smooth = footprint::is_on(settings);
+        if let Some(other) = part.objects.iter().find(|drawn| smooth && !drawn.decisions.has(Effect::Footprint)) {
+            return Err(RenderError::NoFootprint { object: other.object.name.clone(), rung: part.rung });
+        }
         all.append(match part.rung {
             Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.gem.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
@@ -120,6 +129,7 @@ pub(super) fn scene_pass(
             _ if settings.gem.deferred => {
                 gem::pass(builder, lighting, part, source, ("gem_deferred_fragment", deferred))?
             }
+            _ if smooth => gem::pass(builder, lighting, part, source, ("gem_footprint_fragment", &footprint::FORMATS))?,
             _ => gem::pass(builder, lighting, part, source, ("gem_fragment", forward))?,
         });
     }

@@ -84,6 +84,17 @@ pub enum RenderError {
         /// Its rung.
         rung: Rung,
     },
+    /// An object whose facets' edges cannot be smoothed.
+    #[error(
+        "object `{object}` is drawn by the rung {rung}: --footprint smooths facets' edges for the rungs walk-HITS, walk-HITS+tracker and \
+         walk-HITS+split alone; take --rung walk-8+tracker for a convex stone, or leave --footprint out"
+    )]
+    NoFootprint {
+        /// Name of the object.
+        object: String,
+        /// Its rung.
+        rung: Rung,
+    },
     /// A material that a rung for scattering bodies cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \

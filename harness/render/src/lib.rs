@@ -24,6 +24,7 @@ mod drawing;
 mod environment;
 mod error;
 pub mod file;
+mod footprint;
 pub mod frame;
 mod gem;
 mod harmonics;

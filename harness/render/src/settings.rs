@@ -68,6 +68,9 @@ pub struct GemOptions {
     pub limit_throughput: Option<bool>,
     /// Whether to draw with a geometry buffer and a lighting pass instead of in a single pass.
     pub deferred: bool,
+    /// Whether each sample takes shares of its neighbours where an edge of a facet, seen through
+    /// others, crosses it; not together with `deferred`.
+    pub footprint: bool,
 }
 
 impl Default for GemOptions {
@@ -79,6 +82,7 @@ impl Default for GemOptions {
             distance_limit: None,
             limit_throughput: None,
             deferred: false,
+            footprint: false,
         }
     }
 }
@@ -178,6 +182,7 @@ impl Settings {
             without: self.without,
             scattering: self.scattering,
             shadows: self.shadows,
+            footprint: self.gem.footprint,
             environment: &self.environment,
             exposure: self.exposure,
         }

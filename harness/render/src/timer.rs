@@ -2,6 +2,7 @@
 //! and reads nothing back.
 
 use super::drawing::{apart, scene_pass};
+use super::footprint::{self, FootprintPass};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, Stage, display};
@@ -59,9 +60,16 @@ impl<'gpu> FrameTimer<'gpu> {
         let depth = builder.target("depth", [width, height, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
         let stages = pass.prepare(&mut builder);
         let matrix = lapidary_scene::clip_from_world(scene, width, height);
-        let target = SceneTarget { colors: vec![color], depth, keep_depth: false, size };
+        let view = (matrix, scene.camera.eye);
+        let smooth = footprint::is_on(settings);
+        let footprint = smooth.then(|| FootprintPass::new(&mut builder, size)).transpose()?;
         let start = builder.frame().passes.len();
-        pass.draw(&mut builder, matrix, scene.camera.eye, &target);
+        if let Some(footprint) = footprint {
+            footprint.draw(&mut builder, &pass, view, (color, depth), size);
+        } else {
+            let target = SceneTarget { colors: vec![color], depth, keep_depth: false, size };
+            pass.draw(&mut builder, view.0, view.1, &target);
+        }
         let draw_calls = builder.frame().draw_calls();
         if displayed {
             let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;

@@ -137,6 +137,15 @@ fn gem_copy_of(instance: GemInstance) -> GemCopy {
 }
 //+instances }
 
+// The eye in the stone's space.
+fn gem_eye(input: GemVertex) -> vec3f {
+    if (EFFECT_INSTANCES) {
+        gem_copy = gem_copy_of(instances[input.instance]);
+        return gem_copy.rotation * (view.eye - gem_copy.translation) / gem_copy.scale;
+    }
+    return view.eye;
+}
+
 // The point where a vertex of the stone is drawn.
 fn gem_clip(
     position: vec3f,
@@ -269,7 +278,7 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_hit(&place, ray.position, ray.direction);
+        let hit = gem_hit(&place, ray);
         if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
@@ -310,7 +319,7 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_hit(&place, ray.position, ray.direction);
+        let hit = gem_hit(&place, ray);
         if (gem_arrive(&ray, hit)) {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r);
             let green = gem_exit(dispersion_direction(ray.direction, gradient, offsets.g), hit.normal, material.channel_indices.g);
@@ -351,7 +360,7 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed && !blue.followed) {
             break;
         }
-        let hits = gem_hit_both(&place, ray.position, ray.direction, &place_blue, blue.position, blue.direction);
+        let hits = gem_hit_both(&place, ray, &place_blue, blue);
         if (gem_arrive(&ray, hits.first)) {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
             let green = gem_exit(ray.direction, hits.first.normal, indices.g);
@@ -398,7 +407,7 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
         if (LIMIT_THROUGHPUT && !ray.followed) {
             break;
         }
-        let hit = gem_hit(&place, ray.position, ray.direction);
+        let hit = gem_hit(&place, ray);
         if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
@@ -439,12 +448,7 @@ fn gem_radiance(
     input: GemVertex,
     transmits: bool,  //+bvh_trace,convex_trace,proxy_geometry
 ) -> GemRadiance {
-    var eye = view.eye;
-    if (EFFECT_INSTANCES) {
-        gem_copy = gem_copy_of(instances[input.instance]);
-        eye = gem_copy.rotation * (eye - gem_copy.translation) / gem_copy.scale;
-    }
-    let direction = normalize(input.position - eye);
+    let direction = normalize(input.position - gem_eye(input));
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
     let reflected = gem_surroundings(refraction_reflect(direction, input.face_normal));
     if (EFFECT_THIN_WALL) {

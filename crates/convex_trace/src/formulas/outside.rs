@@ -52,6 +52,20 @@ pub(super) fn promises() -> Vec<Promise> {
             },
         )
         .at_nearest(),
+        holds(
+            "convex_trace_runner_up",
+            "a runner-up nearer than the nearest stays unless the nearest is overtaken",
+            |draws| {
+                let nearest = ConvexTraceHit { distance: draws.between(1.0, 2.0), face: 1 };
+                let runner_up = ConvexTraceHit { distance: draws.between(0.1, 0.9), face: 2 };
+                (nearest, runner_up, ConvexTraceHit { distance: draws.between(0.1, 3.0), face: 3 })
+            },
+            |(nearest, runner_up, hit): (ConvexTraceHit, ConvexTraceHit, ConvexTraceHit), met: ConvexTraceHit| {
+                let nearer = if hit.distance < runner_up.distance { hit } else { runner_up };
+                let wanted = if hit.distance < nearest.distance { nearest } else { nearer };
+                that(met == wanted, || format!("{met:?}"))
+            },
+        ),
         finite("convex_trace_point", "finite up to 1e18", |draws| {
             let plane = draws.unit_vector().extend(draws.signed(-126, 58));
             (vector_up_to(draws, 58), draws.unit_vector(), draws.magnitude(-126, 58), plane)

@@ -52,6 +52,10 @@ struct Gem {
     /// Draw with a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
     deferred: bool,
+    /// Smooth facets' edges inside stones from one sample per pixel, which mixes neighbours in a second
+    /// pass; for the rungs walk-HITS, walk-HITS+tracker and walk-HITS+split.
+    #[arg(long, conflicts_with = "deferred")]
+    footprint: bool,
     /// Centre of the proxy: stable (the default), or the paper's eq. (4).
     #[arg(long, value_name = "FORM", value_parser = ["stable", "paper"])]
     centre: Option<String>,
@@ -121,6 +125,7 @@ impl Gem {
             distance_limit: self.distance_limit,
             limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
             deferred: self.deferred,
+            footprint: self.footprint,
         }
     }
 
@@ -136,7 +141,7 @@ impl Gem {
                 ("--centre paper", centre),
             ])
         };
-        let all = [inside(), given([("--deferred", self.deferred)])].concat();
+        let all = [inside(), given([("--deferred", self.deferred), ("--footprint", self.footprint)])].concat();
         [
             Given {
                 technique: "the gem recipes",

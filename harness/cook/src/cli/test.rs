@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 }
 
 /// Tests that a quick run skips: those whose names contain one of these.
-const SLOW: [&str; 35] = [
+const SLOW: [&str; 36] = [
     "allowance::",
     "antialiasing::",
     "atlas::",
@@ -46,6 +46,7 @@ const SLOW: [&str; 35] = [
     "deferred::",
     "dispatch::random",
     "effects_off::",
+    "footprint::",
     "formulas::every",
     "furnace::",
     "gem::",

@@ -17,7 +17,9 @@ mod curvature;
 mod deferred;
 mod dispatch;
 mod effects_off;
+mod footprint;
 mod formulas;
+
 mod frame;
 mod furnace;
 mod gem;

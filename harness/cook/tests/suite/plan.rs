@@ -177,6 +177,12 @@ fn cases() -> Vec<Case> {
         case(Effect::Dispersion, one("brilliant"), of_rung("proxy-2+3"), [vec!["wavelengths"], vec![], vec![]]),
         case(Effect::Instances, copied, of_rung("bvh-2"), [vec!["instances"], vec![], vec![]]),
         case(
+            Effect::Footprint,
+            one("brilliant"),
+            Settings { gem: GemOptions { footprint: true, ..GemOptions::default() }, ..of_rung("walk-2") },
+            [vec!["radiance", "neighbours", "resolve's view"], vec!["gem_resolve", "gem_walk"], vec!["gem_resolve"]],
+        ),
+        case(
             Effect::Cdrf,
             one("wax"),
             Settings {

@@ -229,7 +229,7 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     }
     progress("comparing how rays end", 0, 1);
     choices::measure(gpu, &watched, &mut report)?;
-    seen::steadiness(gpu, &watched, &mut report)?;
+    seen::steadiness(gpu, (options.rounds, options.frame), &watched, &mut report)?;
     report.rows.extend(colours.concat().iter().flat_map(Colours::rows));
     if options.sizes {
         growth::measure(gpu, options, &mut report, progress)?;

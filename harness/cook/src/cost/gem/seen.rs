@@ -5,7 +5,7 @@ use super::{CostError, Errors, Report, Row};
 use crate::cost::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::Scene;
 
 /// Samples along each side of a pixel in compared and timed pictures. A real-time frame has one;
@@ -74,22 +74,66 @@ pub(super) const STEADY: &str = "walk-8+tracker";
 /// The view's name of a mean over the views.
 pub(super) const MEAN: &str = "mean over the views";
 
-/// Adds the change of the rung that shows the stone, with 1 to 64 samples per pixel: what remains
-/// with many is the stone's own, the rest is noise.
-pub(super) fn steadiness(gpu: &Gpu, watched: &[Watched], report: &mut Report) -> Result<(), CostError> {
+/// One sample per pixel that takes shares of its neighbours.
+pub(super) const SMOOTH: &str = "1, edges smoothed";
+/// The ways to sample a pixel: name, samples along each side, and whether facets' edges are smoothed.
+const WAYS: [(&str, u32, bool); 5] =
+    [("1", 1, false), (SMOOTH, 1, true), ("4", 2, false), ("16", 4, false), ("64", 8, false)];
+/// What is measured of each way: the error to the reference, the distance from the rung's own picture
+/// of 64 samples, and the change to the next frame.
+pub(super) const STEADINESS: [&str; 3] = ["flip with ", "apart with ", "change with "];
+
+/// Adds the errors and the change of the rung that shows the stone, with 1 to 64 samples per pixel and
+/// with smoothed edges: what remains with many is the stone's own, the rest is noise. Ways of one
+/// sample per pixel are timed, in every view and in a frame that the brilliant fills.
+pub(super) fn steadiness(
+    gpu: &Gpu,
+    (rounds, [width, height]): (u32, [u32; 2]),
+    watched: &[Watched],
+    report: &mut Report,
+) -> Result<(), CostError> {
     let Ok(rung) = STEADY.parse() else { return Ok(()) };
-    for samples in [1, 2, 4, 8] {
-        let settings = Settings { rung, samples, ..Settings::of_size(views::SIDE, views::SIDE) };
-        let measure = format!("change with {}", samples * samples);
-        let mut sum = 0.0;
-        for watched in watched {
+    let settings = |samples: u32, footprint: bool| {
+        let gem = GemOptions { footprint, ..GemOptions::default() };
+        Settings { rung, samples, gem, ..Settings::of_size(views::SIDE, views::SIDE) }
+    };
+    let once = WAYS.map(|(_, samples, footprint)| (samples == 1).then(|| settings(1, footprint)));
+    let mut sums = [[0.0; STEADINESS.len() + 1]; WAYS.len()];
+    for watched in watched {
+        let converged = render::render_means(gpu, &watched.scene, &settings(8, false))?;
+        let timed: Vec<_> = once.iter().flatten().map(|once| Timed::new(&watched.scene, once.clone())).collect();
+        let mut timings = timing::time(gpu, &timed, rounds, &mut |_, _| {})?.into_iter();
+        for ((way, samples, footprint), sums) in WAYS.into_iter().zip(&mut sums) {
+            let settings = settings(samples, footprint);
             let now = render::render_means(gpu, &watched.scene, &settings)?;
-            let change = watched.change(gpu, &settings, &now)?;
-            sum += change;
-            report.rows.push(Row::new(STEADY, watched.view.name, &measure, change, ""));
+            let flip = Errors::between(&now, &watched.reference).flip;
+            let values = [flip, change(&now, &converged, &converged), watched.change(gpu, &settings, &now)?];
+            let timing = if samples == 1 { timings.next().flatten() } else { None };
+            let ms = timing.map(|timing| timing.ms);
+            for (measure, value) in STEADINESS.into_iter().zip(values) {
+                let row = Row::new(STEADY, watched.view.name, &format!("{measure}{way}"), value, "");
+                report.rows.push(row.timed(ms));
+            }
+            let added = values.into_iter().chain(ms);
+            sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
         }
-        let mean = (!watched.is_empty()).then(|| sum / watched.len() as f64);
-        report.rows.push(Row::new(STEADY, MEAN, &measure, mean, ""));
+    }
+    let brilliant = Scene::named("brilliant")?;
+    let filled = views::filled(&brilliant);
+    let frames = once.iter().flatten().map(|once| Settings { width, height, ..once.clone() });
+    let timed: Vec<_> = frames.map(|settings| Timed { scales: true, ..Timed::new(&filled, settings) }).collect();
+    let mut timings = timing::time(gpu, &timed, rounds, &mut |_, _| {})?.into_iter();
+    let count = watched.len().max(1) as f64;
+    for ((way, samples, _), [values @ .., ms]) in WAYS.into_iter().zip(sums) {
+        let once = (samples == 1 && rounds > 0).then_some(ms / count);
+        for (measure, sum) in STEADINESS.into_iter().zip(values) {
+            let row = Row::new(STEADY, MEAN, &format!("{measure}{way}"), sum / count, "");
+            report.rows.push(row.timed(once));
+        }
+        if samples == 1 {
+            let ms = timings.next().flatten().map(|timing| timing.ms);
+            report.rows.push(Row::new(STEADY, super::FILLED, &format!("time with {way}"), None, "").timed(ms));
+        }
     }
     Ok(())
 }

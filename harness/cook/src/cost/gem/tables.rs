@@ -4,7 +4,7 @@ use super::dispersion::Colours;
 use super::growth::{self, GROWTH};
 use super::proxy_sizes::{self as sizes};
 use super::reflection::PARTS;
-use super::seen::{MEAN, STEADY};
+use super::seen::{MEAN, STEADINESS, STEADY};
 use super::views::{self, VIEWS};
 use super::{FILLED, MEASURES, RUNGS};
 use crate::cost::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
@@ -171,20 +171,24 @@ fn concave(gem: &Gem<'_>) -> Table {
 }
 
 fn steadiness(gem: &Gem<'_>) -> Table {
+    let report = gem.report;
+    let [flip, apart, changes] = STEADINESS;
     let with = |row: &&crate::cost::Row| row.rung == STEADY && row.view == MEAN;
-    let rows: Vec<(&str, &str)> = gem
-        .report
-        .rows
-        .iter()
-        .filter(with)
-        .filter_map(|row| Some((&*row.measure, row.measure.strip_prefix("change with ")?)))
-        .collect();
-    let change = |view: &str, measure: &str| figure(gem.report.value(STEADY, view, measure), 3);
-    Table::of("steadiness", "Change from frame to frame under a turn of 0.05°, by samples a pixel", rows)
+    let ways: Vec<&str> = report.rows.iter().filter(with).filter_map(|row| row.measure.strip_prefix(changes)).collect();
+    let value =
+        |view: &str, measure: &str, way: &str| figure(report.value(STEADY, view, &format!("{measure}{way}")), 3);
+    let ms = |way: &str| report.ms(STEADY, MEAN, &format!("{changes}{way}"));
+    let filled = |way: &str| report.ms(STEADY, FILLED, &format!("time with {way}"));
+    Table::of("steadiness", "One rung by the way a pixel is sampled", ways)
         .column("rung", |_| STEADY.to_owned())
-        .column("samples a pixel", |(_, samples)| (*samples).to_owned())
-        .column("change, mean over the views", |(measure, _)| change(MEAN, measure))
-        .column("change, `brilliant`", |(measure, _)| change("brilliant", measure))
+        .column("samples a pixel", |way| (*way).to_owned())
+        .column("FLIP", |way| value(MEAN, flip, way))
+        .column("RMSE to 64 samples", |way| value(MEAN, apart, way))
+        .column("`brilliant`", |way| value("brilliant", apart, way))
+        .column("change at 0.05°", |way| value(MEAN, changes, way))
+        .column("`brilliant`", |way| value("brilliant", changes, way))
+        .column("ms", |way| figure(ms(way), 1))
+        .column("ms, filled", |way| figure(filled(way), 1))
         .note("")
 }
 

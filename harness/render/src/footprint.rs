@@ -1,0 +1,66 @@
+//! Facets' edges smoothed from one sample per pixel: the gem recipe also writes shares of the
+//! neighbours, and a second pass mixes them.
+
+use super::pass::{SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::{RenderError, Settings};
+use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
+use crate::record::Record;
+use glam::{Mat4, UVec2, Vec3};
+use lapidary_plan::Effect;
+
+/// Formats of the colour targets: the picture, and shares, for which eight bits suffice.
+pub(super) const FORMATS: [wgpu::TextureFormat; 2] = [SAMPLE_FORMAT, wgpu::TextureFormat::Rgba8Unorm];
+
+/// Recipe of the second pass.
+const RESOLVE: &str = "gem_resolve";
+
+/// Whether the settings ask for smoothed edges.
+pub(super) fn is_on(settings: &Settings) -> bool {
+    settings.gem.footprint && !settings.without.has(Effect::Footprint)
+}
+
+/// The targets of one tile and the second pass.
+pub(super) struct FootprintPass {
+    pipeline: PipelineId,
+    radiance: Texture,
+    neighbours: Texture,
+}
+
+impl FootprintPass {
+    /// Creates the passes for pictures of up to `width` by `height` samples.
+    pub(super) fn new(builder: &mut Builder<'_>, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
+        let pipeline = builder.render_pipeline(&PipelineSource {
+            recipe: RESOLVE,
+            source: &lapidary_wgsl::recipe_source(RESOLVE),
+            entries: ["gem_resolve_vertex", "gem_resolve_fragment"],
+            constants: &[],
+            formats: &[SAMPLE_FORMAT],
+            depth: None,
+        })?;
+        let [radiance, neighbours] = [("radiance", FORMATS[0]), ("neighbours", FORMATS[1])].map(|(what, format)| {
+            builder.target(what, [width, height, 1], format, wgpu::TextureUsages::TEXTURE_BINDING)
+        });
+        Ok(Self { pipeline, radiance, neighbours })
+    }
+
+    /// Draws the stones, then mixes each sample with its neighbours in this tile.
+    pub(super) fn draw(
+        &self,
+        builder: &mut Builder<'_>,
+        gem: &ScenePass,
+        (clip_from_world, eye): (Mat4, Vec3),
+        (samples, depth): (Texture, Texture),
+        size: [u32; 2],
+    ) {
+        let target = SceneTarget { colors: vec![self.radiance, self.neighbours], depth, keep_depth: false, size };
+        gem.draw(builder, clip_from_world, eye, &target);
+        let view = Record::new("GemResolveView").with("size", UVec2::from(size));
+        let uniform = builder.uniform("resolve's view", view);
+        let resources: [(u32, Bound); 3] =
+            [(0, uniform.into()), (1, self.radiance.into()), (2, self.neighbours.into())];
+        let group = builder.bind(self.pipeline, 0, &resources);
+        let draw = builder.draw(self.pipeline, vec![group], 3);
+        let [width, height] = size;
+        builder.draw_to(RESOLVE, &[samples], Some([0, 0, width, height]), vec![draw]);
+    }
+}
