@@ -291,16 +291,20 @@ struct GemFootprintTargets {
     @location(1) neighbours: vec4f,
 }
 
-// With EFFECT_FOOTPRINT in place of gem_fragment. Clear both targets to 0.
+// In place of gem_fragment, for a second pass by gem_resolve. Clear both targets to 0.
 @fragment
 fn gem_footprint_fragment(input: GemVertex) -> GemFootprintTargets {
     var neighbours = vec4f(0.0f);
-    if (EFFECT_FOOTPRINT && EFFECT_CONVEX_TRACE) {
-        gem_footprint_start(input);  //+convex_trace
+    if (EFFECT_FOOTPRINT) {
+        if (EFFECT_CONVEX_TRACE) {
+            gem_footprint_start(input);
+        }
     }
     let radiance = gem_seen(input);
-    if (EFFECT_FOOTPRINT && EFFECT_CONVEX_TRACE) {
-        neighbours = gem_footprint.neighbours;  //+convex_trace
+    if (EFFECT_FOOTPRINT) {
+        if (EFFECT_CONVEX_TRACE) {
+            neighbours = gem_footprint.neighbours;
+        }
     }
     return GemFootprintTargets(radiance, neighbours);
 }

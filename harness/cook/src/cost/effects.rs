@@ -7,7 +7,7 @@ use super::{CostError, Ladder, Options, Progress, Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
-use lapidary_render::{Curvature, DiffuseOptions, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Copies, Environment, Light, Object, Place, Scene};
 
@@ -112,15 +112,23 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         Case {
             name: "ruby, one copy",
             scene: copied("ruby")?,
-            settings: settings("walk-4+tracker"),
+            settings: Settings {
+                gem: GemOptions { footprint: true, ..GemOptions::default() },
+                ..settings("walk-4+tracker")
+            },
             effects: &[
                 Effect::ConvexTrace,
                 Effect::Absorption,
                 Effect::Dispersion,
                 Effect::Instances,
+                Effect::Footprint,
                 Effect::EnvironmentMap,
             ],
-            stands_on: &[(Effect::Absorption, Effect::ConvexTrace), (Effect::Dispersion, Effect::ConvexTrace)],
+            stands_on: &[
+                (Effect::Absorption, Effect::ConvexTrace),
+                (Effect::Dispersion, Effect::ConvexTrace),
+                (Effect::Footprint, Effect::ConvexTrace),
+            ],
         },
         Case {
             name: "ruby, a thin wall",
