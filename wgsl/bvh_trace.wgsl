@@ -1,6 +1,6 @@
 // bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 78a0a8387b7a007e
+// Version: 0.2.0, hash 00050e3d22e34717
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
 //   permutation, shear, edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013
 //   (conservative boxes). The naive triangle: Möller and Trumbore, "Fast, Minimum Storage
@@ -116,7 +116,7 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // Domain: |direction| = 1; rows of an invertible matrix, with components up to 1e6; the transformed
 //   direction at least 1e-6 long; positions up to 1e12.
 // Outside: finite while the direction is not turned into 0.
-// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward; order kept
+// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
 fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f) -> BvhTraceObjectRay {
     let offset = origin - place;
     let turned = vec3f(dot(row_x, direction), dot(row_y, direction), dot(row_z, direction));

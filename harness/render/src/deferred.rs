@@ -4,7 +4,7 @@
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
-use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
+use crate::frame::{Bound, Builder, Depth, PipelineId, PipelineSource, Target, Texture};
 use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
 
@@ -70,9 +70,8 @@ impl DeferredPass {
         size: [u32; 2],
     ) {
         let target = SceneTarget {
-            colors: vec![self.emission, self.normal, self.reflectance],
-            depth: self.depth,
-            keep_depth: true,
+            colors: [self.emission, self.normal, self.reflectance].map(Target::from).into(),
+            depth: Depth { texture: self.depth, load: false, keep: true },
             size,
         };
         gem.draw(builder, clip_from_world, eye, &target);

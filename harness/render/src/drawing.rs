@@ -8,7 +8,7 @@ use super::pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::shadows::Shadows;
 use super::variant::Part;
 use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
-use crate::frame::{Builder, Frame};
+use crate::frame::{Builder, Depth, Frame};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Rung};
 use lapidary_scene::{Copies, Object, Scene};
@@ -73,7 +73,11 @@ impl Drawing {
             } else if let Some(footprint) = &footprint {
                 footprint.draw(builder, &pass, view, (display.samples, depth), size);
             } else {
-                let target = SceneTarget { colors: vec![display.samples], depth, keep_depth: false, size };
+                let target = SceneTarget {
+                    colors: vec![display.samples.into()],
+                    depth: Depth { texture: depth, load: false, keep: false },
+                    size,
+                };
                 pass.draw(builder, view.0, view.1, &target);
             }
             display.encode(builder, tile, settings);
@@ -114,10 +118,7 @@ pub(super) fn scene_pass(
         let source = &*source.map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];
-        let smooth = footprint::is_on(settings);
-        if let Some(other) = part.objects.iter().find(|drawn| smooth && !drawn.decisions.has(Effect::Footprint)) {
-            return Err(RenderError::NoFootprint { object: other.object.name.clone(), rung: part.rung });
-        }
+        let smooth = part.objects.iter().any(|drawn| drawn.decisions.has(Effect::Footprint));
         all.append(match part.rung {
             Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.gem.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
@@ -132,6 +133,9 @@ pub(super) fn scene_pass(
             _ if smooth => gem::pass(builder, lighting, part, source, ("gem_footprint_fragment", &footprint::FORMATS))?,
             _ => gem::pass(builder, lighting, part, source, ("gem_fragment", forward))?,
         });
+    }
+    if footprint::is_on(settings) && all.variants.iter().all(|variant| variant.targets == 1) {
+        return Err(RenderError::NoFootprint { rung: settings.rung });
     }
     // Irradiance that is blurred in a texture is shadowed there, so the shadow maps come first.
     all.before.splice(0..0, shadows.map(Before::Shadows));

@@ -84,15 +84,13 @@ pub enum RenderError {
         /// Its rung.
         rung: Rung,
     },
-    /// An object whose facets' edges cannot be smoothed.
+    /// A rung that draws no object whose facets' edges can be smoothed.
     #[error(
-        "object `{object}` is drawn by the rung {rung}: --footprint smooths facets' edges for the rungs walk-HITS, walk-HITS+tracker and \
-         walk-HITS+split alone; take --rung walk-8+tracker for a convex stone, or leave --footprint out"
+        "by rung {rung} nothing there has facets' edges that --footprint smooths: only the rungs walk-HITS, walk-HITS+tracker and \
+         walk-HITS+split know them; take --rung walk-8+tracker for a convex stone, or leave --footprint out"
     )]
     NoFootprint {
-        /// Name of the object.
-        object: String,
-        /// Its rung.
+        /// The rung asked for.
         rung: Rung,
     },
     /// A material that a rung for scattering bodies cannot draw.

@@ -1,9 +1,9 @@
 //! Facets' edges smoothed from one sample per pixel: the gem recipe also writes shares of the
 //! neighbours, and a second pass mixes them.
 
-use super::pass::{SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::pass::{SAMPLE_FORMAT, ScenePass, SceneTarget, Variant};
 use super::{RenderError, Settings};
-use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
+use crate::frame::{Bound, Builder, Depth, PipelineId, PipelineSource, Target, Texture};
 use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
 use lapidary_plan::Effect;
@@ -16,7 +16,7 @@ const RESOLVE: &str = "gem_resolve";
 
 /// Whether the settings ask for smoothed edges.
 pub(super) fn is_on(settings: &Settings) -> bool {
-    settings.gem.footprint && !settings.without.has(Effect::Footprint)
+    settings.gem.footprint && !settings.gem.deferred && !settings.without.has(Effect::Footprint)
 }
 
 /// The targets of one tile and the second pass.
@@ -52,8 +52,20 @@ impl FootprintPass {
         (samples, depth): (Texture, Texture),
         size: [u32; 2],
     ) {
-        let target = SceneTarget { colors: vec![self.radiance, self.neighbours], depth, keep_depth: false, size };
-        gem.draw(builder, clip_from_world, eye, &target);
+        let is_smoothed = |variant: &Variant| variant.targets == FORMATS.len();
+        let view = (clip_from_world, eye);
+        let others = gem.variants.iter().any(|variant| !is_smoothed(variant));
+        if others {
+            let depth = Depth { texture: depth, load: false, keep: true };
+            let target = SceneTarget { colors: vec![self.radiance.into()], depth, size };
+            gem.draw_some(builder, ("scene", &|variant| !is_smoothed(variant)), view, &target);
+        }
+        // Stones come last: what is drawn over one would keep its shares.
+        let radiance = Target::from(self.radiance);
+        let radiance = Target { clear: radiance.clear.filter(|_| !others), ..radiance };
+        let depth = Depth { texture: depth, load: others, keep: false };
+        let target = SceneTarget { colors: vec![radiance, self.neighbours.into()], depth, size };
+        gem.draw_some(builder, (if others { "stones" } else { "scene" }, &is_smoothed), view, &target);
         let view = Record::new("GemResolveView").with("size", UVec2::from(size));
         let uniform = builder.uniform("resolve's view", view);
         let resources: [(u32, Bound); 3] =

@@ -23,6 +23,7 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
         ("WAVELENGTHS", f64::from(wavelengths)),
         ("BOUNCES", f64::from(rung.hits())),
         ("REST_FROM_ENVIRONMENT", flag(settings.gem.rest_from_environment)),
+        ("END_AT_FIRST_EXIT", flag(settings.gem.end_at_first_exit)),
         ("LIMIT_DISTANCE", flag(settings.gem.distance_limit.is_some())),
         ("LIMIT_THROUGHPUT", flag(restraint::limits_throughput(rung, settings))),
         ("CENTRE_PAPER", flag(settings.gem.paper_centre)),
@@ -51,7 +52,12 @@ pub(super) fn pass(
         })?;
         let add = |drawn| stone::add(builder, pipeline, drawn, part.rung, part.settings);
         let bodies = objects.into_iter().map(add).collect::<Result<Vec<_>, _>>()?;
-        pass.variants.push(Variant { shared: lighting.shared(builder, pipeline)?, pipeline, bodies });
+        pass.variants.push(Variant {
+            shared: lighting.shared(builder, pipeline)?,
+            targets: formats.len(),
+            pipeline,
+            bodies,
+        });
     }
     Ok(pass)
 }

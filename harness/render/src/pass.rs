@@ -3,7 +3,7 @@
 use super::diffusion::Diffusion;
 use super::optical_path::{OpticalPaths, Stage};
 use super::shadows::Shadows;
-use crate::frame::{BindGroupId, Bound, Builder, Draw, Pass, PipelineId, RenderPass, Target, Texture};
+use crate::frame::{BindGroupId, Bound, Builder, Depth, Draw, Pass, PipelineId, RenderPass, Target};
 use crate::record::Record;
 use glam::{Mat4, Vec3};
 use std::ops::Range;
@@ -28,6 +28,8 @@ pub(super) struct Body {
 /// A recipe compiled for the effects of some objects, and those objects.
 pub(super) struct Variant {
     pub(super) pipeline: PipelineId,
+    /// Number of colour targets that the pipeline writes.
+    pub(super) targets: usize,
     /// Resources of group 0 that the pipeline reads, by binding, from 1 on.
     pub(super) shared: Vec<(u32, Bound)>,
     pub(super) bodies: Vec<Body>,
@@ -52,10 +54,8 @@ pub(super) enum Before {
 
 /// Attachments that a pass draws to.
 pub(super) struct SceneTarget {
-    pub(super) colors: Vec<Texture>,
-    pub(super) depth: Texture,
-    /// Whether the depth is kept after the pass.
-    pub(super) keep_depth: bool,
+    pub(super) colors: Vec<Target>,
+    pub(super) depth: Depth,
     /// Size in texels; the area starts at the upper left corner.
     pub(super) size: [u32; 2],
 }
@@ -92,11 +92,22 @@ impl ScenePass {
     /// Draws the objects as seen from `eye` in one pass: one draw call for each object, with the
     /// pipeline of its variant.
     pub(super) fn draw(&self, builder: &mut Builder<'_>, clip_from_world: Mat4, eye: Vec3, target: &SceneTarget) {
+        self.draw_some(builder, ("scene", &|_| true), (clip_from_world, eye), target);
+    }
+
+    /// Draws the objects of some variants in a pass of this name.
+    pub(super) fn draw_some(
+        &self,
+        builder: &mut Builder<'_>,
+        (name, is_drawn): (&str, &dyn Fn(&Variant) -> bool),
+        (clip_from_world, eye): (Mat4, Vec3),
+        target: &SceneTarget,
+    ) {
         // All recipes declare the same view struct.
         let view = Record::new("GemView").with("clip_from_world", clip_from_world).with("eye", eye);
         let uniform = builder.uniform("view", view);
         let mut draws = Vec::new();
-        for variant in &self.variants {
+        for variant in self.variants.iter().filter(|variant| is_drawn(variant)) {
             let resources = [&[(0, Bound::from(uniform))][..], &variant.shared].concat();
             let group = builder.bind(variant.pipeline, 0, &resources);
             for body in &variant.bodies {
@@ -108,9 +119,9 @@ impl ScenePass {
         }
         let [width, height] = target.size;
         builder.pass(Pass::Render(RenderPass {
-            name: "scene".to_owned(),
-            targets: target.colors.iter().copied().map(Target::from).collect(),
-            depth: Some((target.depth, target.keep_depth)),
+            name: name.to_owned(),
+            targets: target.colors.clone(),
+            depth: Some(target.depth),
             viewport: Some([0, 0, width, height]),
             draws,
         }));

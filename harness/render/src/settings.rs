@@ -61,6 +61,8 @@ pub struct GemOptions {
     /// Whether the energy that a ray still carries at its last hit is taken from the environment
     /// along the ray; dropped otherwise.
     pub rest_from_environment: bool,
+    /// Whether a ray ends at the first facet where any of it can leave, with all of it.
+    pub end_at_first_exit: bool,
     /// Longest path of a ray inside a stone, in units of length; `None` for no limit.
     pub distance_limit: Option<f32>,
     /// Whether a ray inside a stone ends when its contribution can no longer be seen; `None` lets
@@ -79,6 +81,7 @@ impl Default for GemOptions {
             paper_centre: false,
             dispersion_strength: 1.0,
             rest_from_environment: true,
+            end_at_first_exit: false,
             distance_limit: None,
             limit_throughput: None,
             deferred: false,

@@ -6,7 +6,7 @@ use super::footprint::{self, FootprintPass};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, Stage, display};
-use crate::frame::{Builder, Executor};
+use crate::frame::{Builder, Depth, Executor};
 use crate::solver::Status;
 use glam::Vec2;
 use lapidary_gpu::{Gpu, GpuError};
@@ -67,7 +67,11 @@ impl<'gpu> FrameTimer<'gpu> {
         if let Some(footprint) = footprint {
             footprint.draw(&mut builder, &pass, view, (color, depth), size);
         } else {
-            let target = SceneTarget { colors: vec![color], depth, keep_depth: false, size };
+            let target = SceneTarget {
+                colors: vec![color.into()],
+                depth: Depth { texture: depth, load: false, keep: false },
+                size,
+            };
             pass.draw(&mut builder, view.0, view.1, &target);
         }
         let draw_calls = builder.frame().draw_calls();

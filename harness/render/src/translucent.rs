@@ -50,7 +50,7 @@ pub(super) fn pass(
             bodies.push(body);
             pass.before.extend(diffusion.map(Before::Diffusion));
         }
-        pass.variants.push(Variant { shared: shared(builder, light, pipeline)?, pipeline, bodies });
+        pass.variants.push(Variant { shared: shared(builder, light, pipeline)?, targets: 1, pipeline, bodies });
     }
     Ok(pass)
 }

@@ -30,6 +30,9 @@ override BOUNCES: u32 = 1u;
 // because it met no facet) is taken from the environment along the ray, which keeps the energy and
 // guesses the direction. If false, that light is dropped, which darkens the stone.
 override REST_FROM_ENVIRONMENT: bool = true;
+// A ray also ends where any of its light can leave: all of it then leaves there, which keeps the energy
+// and drops what would be reflected on. Channels that are totally reflected go on.
+override END_AT_FIRST_EXIT: bool = false;
 // A ray also ends once it has travelled farther than material.distance_limit inside.
 override LIMIT_DISTANCE: bool = false;
 // A ray also ends when its light can no longer be seen: when no channel's throughput reaches
@@ -235,7 +238,7 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
 }
 
 // Takes a ray as far as its next facet. Returns whether it is followed there. The loops below `break`
-// only with LIMIT_THROUGHPUT: without a `break` a compiler may unroll them, and few rays end before
+// only with LIMIT_THROUGHPUT or END_AT_FIRST_EXIT: without a `break` a compiler may unroll them, and few rays end before
 // the last bounce for other reasons.
 fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
     if ((*ray).followed) {
@@ -250,14 +253,21 @@ fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
 
 // Lets a share of each channel leave and adds the radiance that it meets outside.
 fn gem_leave(ray: ptr<function, GemRay>, share: vec3f, outside: vec3f) {
-    (*ray).radiance += share * (*ray).throughput * outside;
-    (*ray).throughput *= 1.0f - share;
+    var left = share;
+    if (END_AT_FIRST_EXIT) {
+        left = ceil(share);
+    }
+    (*ray).radiance += left * (*ray).throughput * outside;
+    (*ray).throughput *= 1.0f - left;
 }
 
 // Reflects the rest, which is followed further if it can be seen.
 fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
     (*ray).position = hit.point;
     (*ray).direction = refraction_reflect((*ray).direction, hit.normal);
+    if (END_AT_FIRST_EXIT) {
+        (*ray).followed = any((*ray).throughput > vec3f(0.0f));
+    }
     if (LIMIT_THROUGHPUT) {
         let throughput = (*ray).throughput;
         (*ray).followed = max(max(throughput.r, throughput.g), throughput.b) >= material.throughput_limit;
@@ -275,7 +285,7 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        if (LIMIT_THROUGHPUT && !ray.followed) {
+        if ((LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed) {
             break;
         }
         let hit = gem_hit(&place, ray);
@@ -316,7 +326,7 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, material.index).direction);
     var gradient = dispersion_enter(direction, input.face_normal, material.index);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        if (LIMIT_THROUGHPUT && !ray.followed) {
+        if ((LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed) {
             break;
         }
         let hit = gem_hit(&place, ray);
@@ -357,7 +367,7 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
     blue.throughput = vec3f(0.0f, 0.0f, 1.0f);
     var gradient = dispersion_enter(direction, input.face_normal, indices.g);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        if (LIMIT_THROUGHPUT && !ray.followed && !blue.followed) {
+        if ((LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed && !blue.followed) {
             break;
         }
         let hits = gem_hit_both(&place, ray, &place_blue, blue);
@@ -404,7 +414,7 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     var spread = dispersion_paper_enter(direction, ray.direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        if (LIMIT_THROUGHPUT && !ray.followed) {
+        if ((LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed) {
             break;
         }
         let hit = gem_hit(&place, ray);

@@ -27,7 +27,7 @@ export class Frame {
     const frame = new Frame();
     frame.device = device;
     frame.rows = await fetched(folder, 'frame.json', 'json');
-    if (frame.rows.version !== 2) throw new Error(`a frame of version ${frame.rows.version}, not 2`);
+    if (frame.rows.version !== 3) throw new Error(`a frame of version ${frame.rows.version}, not 3`);
     const { resources, pipelines, bind_groups } = frame.rows;
     const bytes = (file) => (file === null ? null : fetched(folder, file, 'arrayBuffer'));
     frame.contents = await Promise.all(resources.map((row) => bytes(row.contents ?? null)));
@@ -170,12 +170,13 @@ export class Frame {
 
   #render(encoder, pass) {
     const colorAttachments = pass.targets.map(({ texture, layer, clear }) => {
-      return { view: this.#layer(texture, layer), clearValue: clear, loadOp: 'clear', storeOp: 'store' };
+      const view = this.#layer(texture, layer);
+      return { view, clearValue: clear ?? undefined, loadOp: clear ? 'clear' : 'load', storeOp: 'store' };
     });
     const depth = pass.depth && {
       view: this.#layer(pass.depth.texture, 0),
       depthClearValue: 1,
-      depthLoadOp: 'clear',
+      depthLoadOp: pass.depth.load ? 'load' : 'clear',
       depthStoreOp: pass.depth.keep ? 'store' : 'discard',
     };
     const render = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment: depth ?? undefined });

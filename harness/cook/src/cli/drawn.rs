@@ -49,6 +49,9 @@ struct Gem {
     /// rungs of 16 hits or more, which it makes faster.
     #[arg(long, value_name = "WHETHER", value_parser = ["on", "off"])]
     throughput_limit: Option<String>,
+    /// End rays where any of their light can leave, with all of it.
+    #[arg(long)]
+    first_exit: bool,
     /// Draw with a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
     deferred: bool,
@@ -122,6 +125,7 @@ impl Gem {
             paper_centre: self.centre.as_deref() == Some("paper"),
             dispersion_strength: self.strength.unwrap_or(usual.dispersion_strength),
             rest_from_environment: self.rest.as_deref() != Some("dropped"),
+            end_at_first_exit: self.first_exit,
             distance_limit: self.distance_limit,
             limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
             deferred: self.deferred,
@@ -137,6 +141,7 @@ impl Gem {
                 ("--strength", strength),
                 ("--rest", self.rest.is_some()),
                 ("--distance-limit", self.distance_limit.is_some()),
+                ("--first-exit", self.first_exit),
                 ("--throughput-limit", self.throughput_limit.is_some()),
                 ("--centre paper", centre),
             ])

@@ -22,6 +22,8 @@ pub struct Shot {
     pub from: Option<(f32, f32)>,
     /// Whether the proxy's centre is that of the paper's eq. (4).
     pub paper_centre: bool,
+    /// Whether facets' edges inside are smoothed.
+    pub footprint: bool,
     /// Whether scattering materials are lit by the scene's lights alone.
     pub lights_alone: bool,
     /// Whether their surface also reflects nothing, as in the reference.
@@ -43,7 +45,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 41] = [
+pub const SHOTS: [Shot; 44] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -113,6 +115,23 @@ pub const SHOTS: [Shot; 41] = [
             keep them together.",
         ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
     },
+    Shot {
+        paragraph: "Two rays, one for blue and one for green, from which red is tracked: most of the fire of separate rays, for little more than \
+            half of their time.",
+        ..shot("exact_split", "Round brilliant, exact, two rays", "brilliant", "walk-8+split")
+    },
+    Shot {
+        samples: 1,
+        paragraph: "One sample a pixel, as in real time: seen through facets, the edges of others are finer than pixels, and break up.",
+        ..shot("footprint_off", "Round brilliant, one sample a pixel", "brilliant", "walk-8+tracker")
+    },
+    Shot {
+        samples: 1,
+        footprint: true,
+        paragraph: "The same sample, edges smoothed: each pixel knows the edge next to each hit, and takes what lies beyond from the neighbour that \
+            shows it.",
+        ..shot("footprint_on", "Round brilliant, one sample a pixel, edges smoothed", "brilliant", "walk-8+tracker")
+    },
     by_lights("skin", "Skin: spheres of falling radius", "skin", "accurate"),
     Shot {
         paragraph: "The same by Lambert's law: the terminator is as sharp on the smallest sphere as on the largest.",
@@ -157,6 +176,7 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         rung,
         from: None,
         paper_centre: false,
+        footprint: false,
         lights_alone: false,
         matte: false,
         exposure: 1.0,
@@ -207,7 +227,7 @@ impl Shot {
         let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
         Settings {
             rung,
-            gem: GemOptions { paper_centre: self.paper_centre, ..GemOptions::default() },
+            gem: GemOptions { paper_centre: self.paper_centre, footprint: self.footprint, ..GemOptions::default() },
             without: self.without(),
             exposure: self.exposure,
             diffuse: DiffuseOptions { curvature: self.curvature, ..DiffuseOptions::default() },
@@ -249,6 +269,7 @@ impl Shot {
     /// Returns the command that renders it.
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
+        let footprint = if self.footprint { " --footprint" } else { "" };
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
         let left_out = self.left_out();
         let light = if left_out.is_empty() { String::new() } else { format!(" --without {}", left_out.join(",")) };
@@ -259,7 +280,7 @@ impl Shot {
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
         let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
-        let choices = format!("{from}{rung}{centre}{light}{curvature}{exposure}{samples}");
+        let choices = format!("{from}{rung}{centre}{footprint}{light}{curvature}{exposure}{samples}");
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

@@ -110,6 +110,37 @@ fn the_second_pass_takes_each_share_from_its_neighbour() {
     assert!(mixed > 3000 && worst <= 16.0 * f32::EPSILON, "{mixed} pixels, {worst:e}");
 }
 
+/// In a scene of several techniques, stones by walk are smoothed and all else stays as it was, as far as
+/// two pictures of the figure agree, whose ways of light are found in any order.
+#[test]
+fn other_bodies_stay_as_they_are() {
+    let scene = Scene::named("vitrine").expect("built in");
+    let by = |footprint| {
+        let settings = Settings { rung: lapidary_plan::Rung::ByMaterial, ..settings("walk-1", 1, footprint) };
+        render::render(super::gpu(), &scene, &settings).expect("rendered").linear
+    };
+    let [plain, smooth] = [by(false), by(true)];
+    let alone =
+        Scene { objects: scene.objects.iter().filter(|object| is_walked(object)).cloned().collect(), ..scene.clone() };
+    let stones = picture(&alone, "walk-1", 1, false).linear;
+    let (mut others, mut changed) = (0, 0);
+    for (pixel, (plain, smooth)) in plain.iter().zip(&smooth).enumerate() {
+        if stones[pixel][3] == 0.0 {
+            let apart = (Vec4::from_array(*plain) - Vec4::from_array(*smooth)).abs().max_element();
+            assert!(apart <= 1e-3, "pixel {pixel}: {plain:?}, {smooth:?}");
+            others += usize::from(plain[3] > 0.0);
+        } else {
+            changed += usize::from(plain != smooth);
+        }
+    }
+    println!("{others} pixels of other bodies, {changed} of stones changed");
+    assert!(others > 5000 && changed > 500, "{others}, {changed}");
+}
+
+fn is_walked(object: &Object) -> bool {
+    ["diamond", "ruby"].contains(&&*object.name)
+}
+
 /// Left out, the effect leaves nothing behind: the picture is that without it, bit for bit.
 #[test]
 fn left_out_it_changes_nothing() {

@@ -4,7 +4,7 @@ mod executor;
 
 use crate::gpu;
 use lapidary_assay::extremum::larger;
-use lapidary_plan::Rung;
+use lapidary_plan::{Rung, Scattering};
 use lapidary_render::frame::Executor;
 use lapidary_render::{GemOptions, Settings, frame, render};
 use lapidary_scene::Scene;
@@ -45,6 +45,15 @@ fn another_host_draws_the_same_pictures() {
         ("pave_ring", by_material.clone()),
         ("skin_bunny", Settings { shadows: true, ..of_rung("blur") }),
         ("wax", of_rung("table-257-rgba16f")),
+        // Stones over other bodies: a pass that keeps what is there.
+        (
+            "vitrine",
+            Settings {
+                scattering: Some(Scattering::Cdrf),
+                gem: GemOptions { footprint: true, ..GemOptions::default() },
+                ..by_material.clone()
+            },
+        ),
         ("ruby", Settings { gem: GemOptions { deferred: true, ..GemOptions::default() }, ..of_rung("proxy-2") }),
     ];
     for (name, settings) in cases {

@@ -132,7 +132,9 @@ fn so_it_is_with_every_choice() {
         check(scene, "limited by throughput", &compare(scene, limited));
     }
     let dropped = with("proxy-4+tracker", |gem| gem.rest_from_environment = false);
+    let first = with("walk-8+tracker", |gem| gem.end_at_first_exit = true);
     check("brilliant", "rest dropped", &compare("brilliant", dropped));
+    check("brilliant", "ended at the first exit", &compare("brilliant", first));
     let paper = with("proxy-1", |gem| gem.paper_centre = true);
     check("brilliant", "paper's centre", &compare("brilliant", paper));
     let clear = Settings { without: Effects::of(&[Effect::Absorption]), ..of_rung("convex-4") };
@@ -200,7 +202,7 @@ const FAULTS: [Fault; 23] = [
         "refraction_refract(direction, input.face_normal, index)",
         "refraction_refract(direction, input.face_normal, 1.01f * index)",
     ),
-    fault(["brilliant", "proxy-1"], "no Fresnel", "throughput *= 1.0f - share;", "throughput *= 1.0f;"),
+    fault(["brilliant", "proxy-1"], "no Fresnel", "throughput *= 1.0f - left;", "throughput *= 1.0f;"),
     fault(
         ["brilliant", "proxy-1"],
         "the tile of the other half",

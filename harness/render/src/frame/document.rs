@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Version of the format; readers of other versions should refuse it.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Reason why a frame could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -163,12 +163,13 @@ enum PassRow {
 struct TargetRow {
     texture: usize,
     layer: u32,
-    clear: [f64; 4],
+    clear: Option<[f64; 4]>,
 }
 
 #[derive(Serialize)]
 struct DepthRow {
     texture: usize,
+    load: bool,
     keep: bool,
 }
 
@@ -317,7 +318,7 @@ fn pass_row(pass: &Pass) -> PassRow {
                 .iter()
                 .map(|&Target { texture, layer, clear }| TargetRow { texture: texture.0, layer, clear })
                 .collect(),
-            depth: depth.map(|(texture, keep)| DepthRow { texture: texture.0, keep }),
+            depth: depth.map(|Depth { texture, load, keep }| DepthRow { texture: texture.0, load, keep }),
             viewport: *viewport,
             draws: draws
                 .iter()

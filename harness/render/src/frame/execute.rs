@@ -235,15 +235,16 @@ impl<'gpu> Executor<'gpu> {
         };
         let views: Vec<_> = pass.targets.iter().map(|target| layer(target.texture, target.layer)).collect();
         let attachment = |(target, view): (&Target, _)| {
-            let [r, g, b, a] = target.clear;
-            let load = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a });
+            let cleared = |[r, g, b, a]: [f64; 4]| wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a });
+            let load = target.clear.map_or(wgpu::LoadOp::Load, cleared);
             let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
             Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
         };
-        let depth = pass.depth.map(|(texture, keep)| (layer(texture, 0), keep));
-        let depth_attachment = depth.as_ref().map(|(view, keep)| {
+        let depth = pass.depth.map(|depth| (layer(depth.texture, 0), depth));
+        let depth_attachment = depth.as_ref().map(|(view, Depth { load, keep, .. })| {
+            let load = if *load { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
             let store = if *keep { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
-            let depth_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store });
+            let depth_ops = Some(wgpu::Operations { load, store });
             wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
         });
         let mut encoded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

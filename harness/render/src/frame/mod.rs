@@ -298,9 +298,8 @@ pub struct RenderPass {
     pub name: String,
     /// Colour targets, one for each target of the pipelines.
     pub targets: Vec<Target>,
-    /// The depth buffer, cleared to 1, and whether it is kept for later passes; `None` if there is
-    /// none.
-    pub depth: Option<(Texture, bool)>,
+    /// The depth buffer; `None` if there is none.
+    pub depth: Option<Depth>,
     /// Left, top, width and height in texels; `None` for the whole target.
     pub viewport: Option<[u32; 4]>,
     /// Draws, in order.
@@ -314,14 +313,25 @@ pub struct Target {
     pub texture: Texture,
     /// Layer of the texture.
     pub layer: u32,
-    /// Clear value: red, green, blue, alpha.
-    pub clear: [f64; 4],
+    /// Clear value: red, green, blue, alpha; `None` if what is there stays.
+    pub clear: Option<[f64; 4]>,
+}
+
+/// A depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// The texture that is drawn to.
+    pub texture: Texture,
+    /// Whether what is there stays; cleared to 1 otherwise.
+    pub load: bool,
+    /// Whether it is kept for later passes.
+    pub keep: bool,
 }
 
 impl From<Texture> for Target {
     /// Takes the first layer, cleared to 0.
     fn from(texture: Texture) -> Self {
-        Self { texture, layer: 0, clear: [0.0; 4] }
+        Self { texture, layer: 0, clear: Some([0.0; 4]) }
     }
 }
 

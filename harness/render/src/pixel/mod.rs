@@ -91,11 +91,6 @@ impl Ray {
         Self { position, direction, travelled: 0.0, throughput, radiance, followed: true, events: Vec::new() }
     }
 
-    fn leave(&mut self, share: Vec3, outside: Vec3) {
-        self.radiance += share * self.throughput * outside;
-        self.throughput *= 1.0 - share;
-    }
-
     fn end(&mut self, outside: Vec3) {
         self.radiance += self.throughput * outside;
     }
@@ -191,9 +186,18 @@ impl<'a> Shading<'a> {
         ray.followed
     }
 
+    fn leave(&self, ray: &mut Ray, share: Vec3, outside: Vec3) {
+        let left = if self.settings.gem.end_at_first_exit { share.ceil() } else { share };
+        ray.radiance += left * ray.throughput * outside;
+        ray.throughput *= 1.0 - left;
+    }
+
     fn reflect(&self, ray: &mut Ray, hit: &Hit) {
         ray.position = hit.point;
         ray.direction = refraction::reflect(ray.direction, hit.normal);
+        if self.settings.gem.end_at_first_exit {
+            ray.followed = ray.throughput.cmpgt(Vec3::ZERO).any();
+        }
         if self.limits_throughput {
             ray.followed = ray.throughput.max_element() >= self.material.throughput_limit;
         }
@@ -213,7 +217,7 @@ impl<'a> Shading<'a> {
             let exit = exit(ray.direction, hit.normal, index);
             ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
             if exit.share > 0.0 {
-                ray.leave(Vec3::splat(exit.share), self.environment(exit.direction));
+                self.leave(&mut ray, Vec3::splat(exit.share), self.environment(exit.direction));
             }
             self.reflect(&mut ray, &hit);
         }
@@ -248,7 +252,7 @@ impl<'a> Shading<'a> {
             let share = Vec3::new(red.share, green.share, blue.share);
             ray.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8 });
             if share.cmpgt(Vec3::ZERO).any() {
-                ray.leave(share, self.environment_channels(red.direction, green.direction, blue.direction));
+                self.leave(&mut ray, share, self.environment_channels(red.direction, green.direction, blue.direction));
             }
             self.reflect(&mut ray, &hit);
             gradient = dispersion::reflect(gradient, hit.normal);
@@ -295,7 +299,7 @@ impl<'a> Shading<'a> {
                 ray.events.push(Event { facet: hit.facet, total });
                 if red.share > 0.0 || green.share > 0.0 {
                     let share = Vec3::new(red.share, green.share, 0.0);
-                    ray.leave(share, self.environment_red_green(red.direction, green.direction));
+                    self.leave(&mut ray, share, self.environment_red_green(red.direction, green.direction));
                 }
                 self.reflect(&mut ray, &hit);
                 gradient = dispersion::reflect(gradient, hit.normal);
@@ -304,7 +308,7 @@ impl<'a> Shading<'a> {
                 let exit = exit(blue.direction, hit_blue.normal, indices.z);
                 blue.events.push(Event { facet: hit_blue.facet, total: u8::from(exit.share == 0.0) });
                 if exit.share > 0.0 {
-                    blue.leave(Vec3::new(0.0, 0.0, exit.share), self.environment_blue(exit.direction));
+                    self.leave(&mut blue, Vec3::new(0.0, 0.0, exit.share), self.environment_blue(exit.direction));
                 }
                 self.reflect(&mut blue, &hit_blue);
             }
@@ -345,7 +349,8 @@ impl<'a> Shading<'a> {
             ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
             if exit.share > 0.0 {
                 let leaving = dispersion::paper_refract(ray.direction, spread, hit.normal, 1.0 / index, epsilon);
-                ray.leave(Vec3::splat(exit.share), self.environment_paper(exit.direction, leaving, ray.travelled));
+                let outside = self.environment_paper(exit.direction, leaving, ray.travelled);
+                self.leave(&mut ray, Vec3::splat(exit.share), outside);
             }
             spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
             self.reflect(&mut ray, &hit);

@@ -159,7 +159,7 @@ fn steps(frame: &Frame) -> Vec<Step> {
         match pass {
             Pass::Render(pass) => {
                 let colors = pass.targets.iter().map(|target| target.texture);
-                let targets = colors.chain(pass.depth.map(|(depth, _)| depth)).map(Bound::from);
+                let targets = colors.chain(pass.depth.map(|depth| depth.texture)).map(Bound::from);
                 for Draw { object, pipeline, groups, .. } in &pass.draws {
                     let resources = names(bound(groups).into_iter().chain(targets.clone()).collect());
                     add(step(&pass.name, object, *pipeline, resources), 1, true);

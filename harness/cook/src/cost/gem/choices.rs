@@ -23,6 +23,7 @@ pub(super) fn measure(gpu: &Gpu, watched: &[Watched], report: &mut Report) -> Re
             let mut ways = vec![
                 ("rest from the environment".to_owned(), usual.clone()),
                 ("rest dropped".to_owned(), with(dropped)),
+                ("ended at the first exit".to_owned(), with(GemOptions { end_at_first_exit: true, ..usual.gem })),
             ];
             if rung.hits() > 1 {
                 let radius = scene.bounds().radius();

@@ -32,7 +32,7 @@ struct Host<'a> {
 pub fn run(device: &Device, queue: &Queue, folder: &Path) -> BTreeMap<String, Picture> {
     let text = std::fs::read_to_string(folder.join("frame.json")).expect("frame.json");
     let frame: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(frame["version"], 2);
+    assert_eq!(frame["version"], 3);
     let mut host = Host { device, queue, resources: Vec::new(), pipelines: Vec::new(), groups: Vec::new() };
     host.resources = list(&frame["resources"]).iter().map(|row| host.resource(row, folder)).collect();
     host.pipelines = list(&frame["pipelines"]).iter().map(|row| host.pipeline(row, folder)).collect();
@@ -243,20 +243,19 @@ impl Host<'_> {
         let targets = list(&row["targets"]);
         let views: Vec<_> = targets.iter().map(|of| layer(&of["texture"], number(&of["layer"]))).collect();
         let attachment = |(of, view): (&Value, _)| {
-            let [r, g, b, a] = [0, 1, 2, 3].map(|channel| of["clear"][channel].as_f64().expect("a number"));
-            let load = LoadOp::Clear(Color { r, g, b, a });
+            let clear =
+                of["clear"].as_array().map(|of| [0, 1, 2, 3].map(|channel| of[channel].as_f64().expect("a number")));
+            let load = clear.map_or(LoadOp::Load, |[r, g, b, a]| LoadOp::Clear(Color { r, g, b, a }));
             let ops = Operations { load, store: StoreOp::Store };
             Some(RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
         };
         let depth = (!row["depth"].is_null()).then(|| layer(&row["depth"]["texture"], 0));
-        let depth_ops = Some(Operations { load: LoadOp::Clear(1.0), store: StoreOp::Store });
+        let load = if row["depth"]["load"] == true { LoadOp::Load } else { LoadOp::Clear(1.0) };
+        let depth_ops = Some(Operations { load, store: StoreOp::Store });
+        let depth_of = |view| RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             color_attachments: &targets.iter().zip(&views).map(attachment).collect::<Vec<_>>(),
-            depth_stencil_attachment: depth.as_ref().map(|view| RenderPassDepthStencilAttachment {
-                view,
-                depth_ops,
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: depth.as_ref().map(depth_of),
             ..RenderPassDescriptor::default()
         });
         if !row["viewport"].is_null() {
