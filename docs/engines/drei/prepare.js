@@ -27,8 +27,9 @@ for (const { name, from } of views) {
   // A frame of at most 512 pixels is one tile, whose matrix is that of the whole picture.
   const small = Math.min(size, 512);
   cook(join(frames, 'camera'), 'frame', scene, '--rung', 'surface', '--size', `${small}x${small}`, ...view);
-  for (const rung of lapidary) {
-    cook(join(frames, rung), 'frame', scene, '--rung', rung, '--size', `${size}x${size}`, ...view);
+  for (const name of lapidary) {
+    // A rung, and options behind it.
+    cook(join(frames, name), 'frame', scene, '--rung', ...name.split(' '), '--size', `${size}x${size}`, ...view);
   }
   if (all === 'references') {
     const reference = ['--rung', 'reference', '--size', `${size}x${size}`];

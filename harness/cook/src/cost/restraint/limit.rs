@@ -19,7 +19,7 @@ const SIDE: u32 = 256;
 const COUNTED: [u32; 2] = [96, 54];
 /// The early exit from a loop in the recipes' source, and its replacement that runs the loop to its
 /// end.
-const BREAK: [&str; 2] = ["if (LIMIT_THROUGHPUT && !ray.followed) {", "if (LIMIT_THROUGHPUT && false) {"];
+const BREAK: [&str; 2] = ["(LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed", "false"];
 
 /// The way of a rung with the limit and early exits from the loops.
 pub(super) const LIMITED: &str = "limited";
@@ -127,7 +127,7 @@ mod tests {
     fn every_recipe_has_the_break_that_is_taken_out() {
         for rung in super::super::RUNGS {
             let rung: Rung = rung.parse().expect(rung);
-            assert_eq!(lapidary_wgsl::recipe_source(rung.recipe()).matches(BREAK[0]).count(), 3, "{rung}");
+            assert_eq!(lapidary_wgsl::recipe_source(rung.recipe()).matches(BREAK[0]).count(), 4, "{rung}");
         }
     }
 }
