@@ -1,6 +1,6 @@
 // convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 54521aa25e819de9
+// Version: 0.2.0, hash 3ef8a9d15ff63494
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon;
 //   Cyrus and Beck, "Generalized two- and three-dimensional clipping", 1978, for planes in place of
 //   polygons.
@@ -70,7 +70,8 @@ fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, pla
 }
 
 // Updates the runner-up with one plane's own hit, before the nearest hit takes it up: the plane that
-// the ray would meet if the nearest were not there. A list may name a plane twice.
+// the ray would meet if the nearest were not there. A list may name a plane twice. A nearest without a
+// face is a limit, and no plane that could become the runner-up.
 // Returns: the second of the three by distance; of one plane's hits, one counts.
 // Units: those of the hits.
 // Domain: distances of 0 or in [1e-30, 1e30]; hits of convex_trace_step on planes of their own, except
@@ -80,10 +81,11 @@ fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, pla
 fn convex_trace_runner_up(nearest: ConvexTraceHit, runner_up: ConvexTraceHit, hit: ConvexTraceHit) -> ConvexTraceHit {
     // Without branches, which in a loop would take longer.
     let overtakes = hit.distance < nearest.distance;
-    let second = hit.distance < runner_up.distance && hit.face != nearest.face;
+    let second = hit.distance < runner_up.distance && hit.face != nearest.face && !overtakes;
+    let overtaken = overtakes && nearest.face != CONVEX_TRACE_NONE;
     let distance = select(runner_up.distance, hit.distance, second);
     let face = select(runner_up.face, hit.face, second);
-    return ConvexTraceHit(select(distance, nearest.distance, overtakes), select(face, nearest.face, overtakes));
+    return ConvexTraceHit(select(distance, nearest.distance, overtaken), select(face, nearest.face, overtaken));
 }
 
 // Point at which a ray meets a plane, moved back onto the plane. The rounding of x, t and r moves

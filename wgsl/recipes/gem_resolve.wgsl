@@ -25,7 +25,9 @@ fn gem_resolve_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position) 
 @fragment
 fn gem_resolve_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(position.xy);
-    let shares = textureLoad(neighbours, texel, 0);
+    let found = textureLoad(neighbours, texel, 0);
+    // Rounded to eight bits, they may add up to more than 1.
+    let shares = found / max(found.x + found.y + found.z + found.w, 1.0f);
     let own = textureLoad(radiance, texel, 0);
     if (all(shares == vec4f(0.0f))) {
         return own;

@@ -11,7 +11,8 @@
 // KHR_materials_transmission.
 override EFFECT_CONVEX_TRACE: bool = true;
 // Facets' edges inside are smoothed from one sample per pixel: gem_footprint_fragment also writes
-// shares of the four neighbours, with which gem_resolve mixes them. Called for by the user.
+// shares of the four neighbours, with which gem_resolve mixes them. Not with DISPERSION_FORM 2, whose
+// rays have edges of their own. Called for by the user.
 override EFFECT_FOOTPRINT: bool = false;
 
 // The stone's place and a box around it.
@@ -71,11 +72,6 @@ fn gem_enter(input: GemVertex) -> GemPlace {
 }
 
 //+convex_trace,footprint {
-// Throughput, of the brightest channel, from which on an edge counts in full. What a pixel has
-// gathered before the edge is its own, and a neighbour's is no better: with less light to come, less
-// is taken from it.
-const GEM_FOOTPRINT_FULL: f32 = 0.5f;
-
 // A pixel's footprint on its ray, and what it has found of edges.
 struct GemFootprint {
     // Change of the point on the ray from this pixel to the next, to the right and down.
@@ -152,8 +148,9 @@ fn gem_footprint_hit(ray: GemRay, nearest: ConvexTraceHit) {
         let gap = runner_up.distance - nearest.distance;
         let edge = ray_footprint_edge(ray.direction, gem_footprint.right, gem_footprint.down, normal, planes[runner_up.face].xyz, gap);
         let growth = ray_footprint_growth(gem_footprint.distance, ray.travelled + nearest.distance, material.index);
-        let throughput = max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
-        gem_footprint_add(vec3f(edge.x, growth * edge.yz), min(throughput / GEM_FOOTPRINT_FULL, 1.0f));
+        // What the pixel has gathered before the edge is its own: only the light still to come counts.
+        let to_come = max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
+        gem_footprint_add(vec3f(edge.x, growth * edge.yz), to_come);
     }
     gem_footprint.right = refraction_reflect(gem_footprint.right, normal);
     gem_footprint.down = refraction_reflect(gem_footprint.down, normal);
@@ -216,9 +213,10 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     return gem_met(place, ray, nearest);
 }
 
-// The walk of the first ray, whose candidates the second ray is tested against as well. If that finds
-// another facet for it, it walks on from there by itself. It may then have missed a facet that is
-// met by neither ray's candidates: a sliver between two edges.
+// The walk of the first ray, whose candidates the second ray is tested against as well. As long as
+// both come from one facet and meet one facet, that is all; otherwise the second ray walks on by
+// itself, from the nearest of them. A facet that is no candidate of the first ray may then be missed
+// while the rays are together: a sliver between two edges.
 fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
     let start = (*place).position;
     let left = (*place).face;
@@ -258,7 +256,7 @@ fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<fu
         // The first ray stands for both.
         gem_footprint_hit(ray, nearest);
     }
-    if (nearest_other.face != nearest.face) {
+    if (nearest_other.face != nearest.face || left_other != left) {
         nearest_other = gem_walk(nearest_other, start_other, other.direction, left_other);
         if (EFFECT_FOOTPRINT) {
             gem_footprint.runner_up = convex_trace_start(CONVEX_TRACE_FAR);
@@ -291,7 +289,8 @@ struct GemFootprintTargets {
     @location(1) neighbours: vec4f,
 }
 
-// In place of gem_fragment, for a second pass by gem_resolve. Clear both targets to 0.
+// In place of gem_fragment, for a second pass by gem_resolve. Draw without blending, after all bodies
+// behind or before the stones; `neighbours` is cleared to 0.
 @fragment
 fn gem_footprint_fragment(input: GemVertex) -> GemFootprintTargets {
     var neighbours = vec4f(0.0f);

@@ -212,6 +212,10 @@ fn runner_up_formula() -> Formula {
     type Three = (ConvexTraceHit, ConvexTraceHit, ConvexTraceHit);
     formula(M, "convex_trace_runner_up", mirror::runner_up, oracle::runner_up, three_hits)
         .edge("nothing hit so far", |(nearest, ..): Three| nearest.face == CONVEX_TRACE_NONE)
+        .edge("the first plane within the limit", |(nearest, runner_up, hit): Three| {
+            let limit = nearest.face == CONVEX_TRACE_NONE && hit.distance < nearest.distance;
+            limit && runner_up.face != CONVEX_TRACE_NONE
+        })
         .edge("no runner-up so far", |(_, runner_up, _): Three| runner_up.face == CONVEX_TRACE_NONE)
         .edge("nothing is hit", |(.., hit): Three| hit.face == CONVEX_TRACE_NONE)
         .edge("the nearest again", |(nearest, _, hit): Three| hit == nearest)

@@ -70,9 +70,10 @@ pub fn step_naive(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: V
 /// Updates the runner-up with one plane's own hit, before the nearest hit takes it up.
 pub fn runner_up(nearest: ConvexTraceHit, runner_up: ConvexTraceHit, hit: ConvexTraceHit) -> ConvexTraceHit {
     let overtakes = hit.distance < nearest.distance;
-    let second = hit.distance < runner_up.distance && hit.face != nearest.face;
+    let second = hit.distance < runner_up.distance && hit.face != nearest.face && !overtakes;
+    let overtaken = overtakes && nearest.face != CONVEX_TRACE_NONE;
     let kept = if second { hit } else { runner_up };
-    if overtakes { nearest } else { kept }
+    if overtaken { nearest } else { kept }
 }
 
 /// Returns the point at which a ray meets a plane, moved back onto the plane.

@@ -51,7 +51,12 @@ fn nearer(first: ConvexTraceHit, second: ConvexTraceHit) -> ConvexTraceHit {
 }
 
 /// Sorts the hits by distance, each plane once, and returns the second; at equal distances the earlier.
+/// Before the first plane within the limit, the hits beyond it are sorted alone.
 pub fn runner_up(nearest: ConvexTraceHit, runner_up: ConvexTraceHit, hit: ConvexTraceHit) -> ConvexTraceHit {
+    if nearest.face == NONE {
+        let beyond = hit.face != NONE && hit.distance >= nearest.distance;
+        return if beyond { nearer(runner_up, hit) } else { runner_up };
+    }
     let mut hits = vec![nearest, runner_up];
     if hit.face != nearest.face {
         hits.push(hit);

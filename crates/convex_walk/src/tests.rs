@@ -4,7 +4,7 @@
 use super::*;
 use glam::{DVec3, DVec4, Vec4, Vec4Swizzles as _};
 use lapidary_assay::draws::Draws;
-use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_NONE, ConvexTraceHit};
+use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit};
 use std::f64::consts::PI;
 
 /// Returns the hit of the loop that the WGSL file's header shows, and the number of its passes before
@@ -290,4 +290,56 @@ fn what_has_no_map_is_told() {
     away[3].w = f32::NAN;
     assert!(of(&away, 8).contains("plane 3"));
     assert!(of(&vec![Vec4::W; 5_000], 8).contains("5000 facets"));
+}
+
+/// The runner-up of a walk, of the candidates that it tests, is the second plane of all where the edge
+/// between the two is within half a pixel of a stone of 250; farther off, it matters to no pixel.
+#[test]
+fn the_runner_up_of_a_walk_is_that_of_all_planes_beside_an_edge() {
+    for (name, planes, side) in
+        [("brilliant", brilliant(8, 4), 64), ("more facets", brilliant(16, 8), 128), ("lens", lens(200), 64)]
+    {
+        let stone = Stone::of(&planes, 1.0, side);
+        let mut draws = Draws::of_row(4, 0);
+        let (mut near, mut other) = (0, 0);
+        for _ in 0..4_000 {
+            let (mut position, mut direction) = (Vec3::ZERO, draws.direction().as_vec3());
+            let mut left = CONVEX_TRACE_NONE;
+            for _ in 0..16 {
+                let mut found = [exit(position, direction, stone.map.lower, stone.map.upper), CONVEX_TRACE_FAR]
+                    .map(convex_trace::start);
+                let both = |[nearest, runner_up]: [ConvexTraceHit; 2], face: u32| {
+                    let far = convex_trace::start(CONVEX_TRACE_FAR);
+                    let hit = convex_trace::step(far, position, direction, stone.planes[face as usize], face, left);
+                    let nearer = if hit.distance < nearest.distance { hit } else { nearest };
+                    [nearer, convex_trace::runner_up(nearest, runner_up, hit)]
+                };
+                loop {
+                    let before = found[0].face;
+                    let point = position + found[0].distance * direction;
+                    found = stone.map.candidates(point).fold(found, both);
+                    if found[0].face == before {
+                        break;
+                    }
+                }
+                let far = [CONVEX_TRACE_FAR; 2].map(convex_trace::start);
+                let all = (0..stone.planes.len() as u32).fold(far, both);
+                // How far the edge is from the ray, across it: docs/ray_footprint.md.
+                let normals = all.map(|hit| stone.planes[hit.face as usize].xyz());
+                let slopes = normals.map(|normal| normal.dot(direction));
+                let across = slopes[0] * normals[1] - slopes[1] * normals[0];
+                let gap = (all[1].distance - all[0].distance) * slopes[0] * slopes[1];
+                if gap < 0.004 * across.length() && all[0].face == found[0].face {
+                    near += 1;
+                    other += u32::from(all[1].face != found[1].face);
+                }
+                let plane = stone.planes[all[0].face as usize];
+                position = convex_trace::point(position, direction, all[0].distance, plane);
+                direction -= 2.0 * plane.xyz().dot(direction) * plane.xyz();
+                left = all[0].face;
+            }
+        }
+        println!("{name}: {other} of {near} runners-up near an edge are others");
+        assert!(near > 500 && other * 20 < near, "{name}: {other} of {near}");
+    }
 }

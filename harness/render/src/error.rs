@@ -86,8 +86,8 @@ pub enum RenderError {
     },
     /// A rung that draws no object whose facets' edges can be smoothed.
     #[error(
-        "by rung {rung} nothing there has facets' edges that --footprint smooths: only the rungs walk-HITS, walk-HITS+tracker and \
-         walk-HITS+split know them; take --rung walk-8+tracker for a convex stone, or leave --footprint out"
+        "--footprint smooths nothing here: rung {rung} does not find the edges of facets; take --rung walk-8+tracker for a convex stone, or \
+         leave --footprint out"
     )]
     NoFootprint {
         /// The rung asked for.

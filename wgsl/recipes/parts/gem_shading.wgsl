@@ -140,7 +140,7 @@ fn gem_copy_of(instance: GemInstance) -> GemCopy {
 }
 //+instances }
 
-// The eye in the stone's space.
+// The eye in the stone's space; with instances, also looks up the copy.
 fn gem_eye(input: GemVertex) -> vec3f {
     if (EFFECT_INSTANCES) {
         gem_copy = gem_copy_of(instances[input.instance]);
@@ -375,7 +375,8 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
             let green = gem_exit(ray.direction, hits.first.normal, indices.g);
             if (red.share > 0.0f || green.share > 0.0f) {
-                gem_leave(&ray, vec3f(red.share, green.share, 0.0f), gem_environment_red_green(red.direction, green.direction));
+                let outside = gem_environment_red_green(red.direction, green.direction);
+                gem_leave(&ray, vec3f(red.share, green.share, 0.0f), outside);
             }
             gem_reflect(&ray, hits.first);
             gradient = dispersion_reflect(gradient, hits.first.normal);

@@ -1,7 +1,7 @@
 // Times techniques in interleaved rounds, so that whatever else the machine does meets them all.
 
 /** Whether a pass draws the stone itself, into linear radiance and depth. */
-export const drawsStone = (pass) => pass.kind === 'render' && ['scene', 'gem_resolve'].includes(pass.name);
+export const drawsStone = (pass) => pass.kind === 'render' && ['scene', 'stones', 'gem_resolve'].includes(pass.name);
 
 /** Whether a pass turns linear samples into the pictures of a frame. */
 export const displays = (pass) => pass.kind === 'render' && pass.name === 'display';

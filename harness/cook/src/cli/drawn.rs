@@ -56,7 +56,7 @@ struct Gem {
     #[arg(long)]
     deferred: bool,
     /// Smooth facets' edges inside stones from one sample per pixel, which mixes neighbours in a second
-    /// pass; for the rungs walk-HITS, walk-HITS+tracker and walk-HITS+split.
+    /// pass; for the rungs walk-HITS, except with separate wavelengths.
     #[arg(long, conflicts_with = "deferred")]
     footprint: bool,
     /// Centre of the proxy: stable (the default), or the paper's eq. (4).

@@ -86,9 +86,9 @@ const RENDER: &[Row] = &[
     ("bunny --deferred --out {}/out.png", One, &["nothing there is drawn by the gem recipes"]),
     ("vitrine --deferred --out {}/out.png", One, &["only clear stones", "leave --deferred out"]),
     ("bunny --footprint --out {}/out.png", One, &["nothing there is drawn by the gem recipes"]),
-    ("prism_chain --footprint --out {}/out.png", One, &["by rung by-material", "leave --footprint out"]),
+    ("prism_chain --footprint --out {}/out.png", One, &["rung by-material", "leave --footprint out"]),
     ("brilliant --rung bvh-4 --footprint --out {}/out.png", One, &["rung bvh-4", "take --rung walk-8+tracker"]),
-    ("brilliant --rung walk-4+3 --footprint --out {}/out.png", One, &["rung walk-4+3", "walk-HITS+tracker"]),
+    ("brilliant --rung walk-4+3 --footprint --out {}/out.png", One, &["rung walk-4+3", "take --rung walk-8+tracker"]),
     ("brilliant --deferred --footprint --out {}/out.png", Usage, &["--deferred", "--footprint"]),
     (
         "ruby --rung reference --without absorption --out {}/out.png",

@@ -35,10 +35,11 @@ fn turned(scene: &Scene) -> Scene {
     Scene { camera: Camera { eye, ..camera }, ..scene.clone() }
 }
 
-/// One sample per pixel is less than half as far from the picture of 64, and changes less than half as
-/// much from frame to frame, with copies too. With two rays, blue's edges are taken for green's. The step cut's facets are thinner.
+/// One sample per pixel is about half as far from the picture of 64, and changes about half as much
+/// from frame to frame, with copies too. With two rays, green's edges stand for blue's, and the step
+/// cut's long facets are thinner than a pixel: there it is a little more than half.
 #[test]
-fn one_sample_comes_near_to_four() {
+fn smoothed_edges_halve_error_and_change() {
     for (name, rung, most) in
         [("brilliant", "walk-8+tracker", 0.5), ("brilliant", "walk-8+split", 0.6), ("step_cut", "walk-8", 0.55)]
     {

@@ -158,13 +158,14 @@ impl Place<'_> {
         else {
             return [self.hit(ray.0, ray.1), other.hit(ray_other.0, ray_other.1)];
         };
+        let (left, left_other) = (*face, *face_other);
         let beyond = convex_trace::start(convex_walk::exit(*start, ray.1, stone.map.lower, stone.map.upper));
         let mut also = convex_trace::start(CONVEX_TRACE_FAR);
         let nearest = walk(stone, beyond, (*start, ray.1), *face, &mut |candidate| {
             let plane = stone.convex.planes[candidate as usize];
             also = convex_trace::step(also, *start_other, ray_other.1, plane, candidate, *face_other);
         });
-        if also.face != nearest.face {
+        if also.face != nearest.face || left_other != left {
             also = walk(stone, also, (*start_other, ray_other.1), *face_other, &mut |_| {});
         }
         [met(stone, face, start, ray, nearest), met(stone, face_other, start_other, ray_other, also)]

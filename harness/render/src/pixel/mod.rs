@@ -298,8 +298,8 @@ impl<'a> Shading<'a> {
                 let total = u8::from(red.share == 0.0) | u8::from(green.share == 0.0) << 1;
                 ray.events.push(Event { facet: hit.facet, total });
                 if red.share > 0.0 || green.share > 0.0 {
-                    let share = Vec3::new(red.share, green.share, 0.0);
-                    self.leave(&mut ray, share, self.environment_red_green(red.direction, green.direction));
+                    let outside = self.environment_red_green(red.direction, green.direction);
+                    self.leave(&mut ray, Vec3::new(red.share, green.share, 0.0), outside);
                 }
                 self.reflect(&mut ray, &hit);
                 gradient = dispersion::reflect(gradient, hit.normal);
