@@ -116,8 +116,7 @@ pub const SHOTS: [Shot; 44] = [
         ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
     },
     Shot {
-        paragraph: "Two rays, one for blue and one for green, from which red is tracked: most of the fire of separate rays, for little more than \
-            half of their time.",
+        paragraph: "Two rays, one for blue and one for green, from which red is tracked: most of the fire of separate rays, in six tenths of their time.",
         ..shot("exact_split", "Round brilliant, exact, two rays", "brilliant", "walk-8+split")
     },
     Shot {
