@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: mesh, mesh_normals, surroundings, gem_shading
+// parts: mesh, mesh_normals, surroundings, gem_shading, gem_apart
 // compares: closest_point
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh is read from storage buffers, so
@@ -101,13 +101,6 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     let normal = proxy_geometry_facet_normal((*place).centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, ray.direction);
     (*place).plane = proxy_geometry_next_plane((*place).centre, facet);
     return GemHit(hit.point, normal, hit.distance, true);
-}
-
-// Each ray has a search of its own.
-fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
-    let first = gem_hit(place, ray);
-    let second = gem_hit(place_other, other);
-    return GemHits(first, second);
 }
 
 @fragment

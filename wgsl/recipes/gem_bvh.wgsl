@@ -3,7 +3,7 @@
 // Source: the part trace_nearest; its loop over all triangles is the comparison of Imagire, "Proxy
 //   Geometry Gem Rendering", section 5.
 // requires: absorption, bvh_trace, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: surroundings, trace_nearest, gem_shading
+// parts: surroundings, trace_nearest, gem_shading, gem_apart
 //
 // Draw 3 vertices per triangle, in the order of the leaves, without a vertex buffer. The nodes and
 // the corners are bound in place of the mesh.
@@ -67,13 +67,6 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     (*place).triangle = nearest.triangle;
     let normal = gem_face_normal(nearest.triangle);
     return GemHit(ray.position + nearest.distance * ray.direction, -normal, nearest.distance, true);
-}
-
-// Each ray has a search of its own.
-fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
-    let first = gem_hit(place, ray);
-    let second = gem_hit(place_other, other);
-    return GemHits(first, second);
 }
 
 @fragment

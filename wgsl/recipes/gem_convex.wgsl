@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
 // requires: absorption, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: mesh, surroundings, gem_shading
+// parts: mesh, surroundings, gem_shading, gem_apart
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes. Each draw takes one stone,
 // which must be convex.
@@ -63,13 +63,6 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     (*place).face = nearest.face;
     let plane = planes[nearest.face];
     return GemHit(convex_trace_point(ray.position, ray.direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
-}
-
-// Each ray has a search of its own.
-fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
-    let first = gem_hit(place, ray);
-    let second = gem_hit(place_other, other);
-    return GemHits(first, second);
 }
 
 @fragment

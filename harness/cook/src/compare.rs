@@ -1,5 +1,6 @@
 //! Comparison of two picture files: how different they look, and how different their light is.
 
+use crate::snapshot;
 use glam::Vec3;
 use image::{DynamicImage, ImageDecoder as _, ImageReader, Limits};
 use std::path::{Path, PathBuf};
@@ -74,9 +75,7 @@ pub fn compare(reference: &Path, picture: &Path) -> Result<Difference, CompareEr
         let (path, reference) = (picture.to_owned(), reference.to_owned());
         return Err(CompareError::Size { path, found: found.size, reference, expected: truth.size });
     }
-    let (width, height) = truth.size;
-    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(width, height, data);
-    let flip = nv_flip::flip(image(&truth.seen), image(&found.seen), nv_flip::DEFAULT_PIXELS_PER_DEGREE).to_vec();
+    let flip = snapshot::flip_of_rgb(truth.size, &found.seen, &truth.seen).to_vec();
     let is_empty = truth.linear.iter().all(|pixel| pixel[3] == 0.0);
     let covered = (0..truth.linear.len()).filter(|place| is_empty || truth.linear[*place][3] > 0.0);
     let (mut sum, mut error, mut power, mut pixels) = (0.0, 0.0, 0.0, 0);

@@ -8,8 +8,8 @@ mod shots;
 pub mod strip;
 mod walked;
 
-pub(crate) use comparison::flip;
 pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear};
+pub(crate) use comparison::{flip, flip_of_rgb};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings, file};

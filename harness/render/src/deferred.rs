@@ -71,7 +71,7 @@ impl DeferredPass {
     ) {
         let target = SceneTarget {
             colors: [self.emission, self.normal, self.reflectance].map(Target::from).into(),
-            depth: Depth { texture: self.depth, load: false, keep: true },
+            depth: Depth { keep: true, ..self.depth.into() },
             size,
         };
         gem.draw(builder, clip_from_world, eye, &target);

@@ -8,7 +8,7 @@ use super::pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::shadows::Shadows;
 use super::variant::Part;
 use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
-use crate::frame::{Builder, Depth, Frame};
+use crate::frame::{Builder, Frame};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Rung};
 use lapidary_scene::{Copies, Object, Scene};
@@ -60,8 +60,7 @@ impl Drawing {
             None
         };
         let [columns, rows] = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
-        let smooth = footprint::is_on(settings);
-        let footprint = smooth.then(|| FootprintPass::new(builder, [columns, rows])).transpose()?;
+        let footprint = FootprintPass::of(builder, settings, [columns, rows])?;
         let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
         let depth = builder.target("depth", [columns, rows, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
         pass.prepare(builder);
@@ -73,11 +72,7 @@ impl Drawing {
             } else if let Some(footprint) = &footprint {
                 footprint.draw(builder, &pass, view, (display.samples, depth), size);
             } else {
-                let target = SceneTarget {
-                    colors: vec![display.samples.into()],
-                    depth: Depth { texture: depth, load: false, keep: false },
-                    size,
-                };
+                let target = SceneTarget { colors: vec![display.samples.into()], depth: depth.into(), size };
                 pass.draw(builder, view.0, view.1, &target);
             }
             display.encode(builder, tile, settings);

@@ -27,8 +27,16 @@ pub(super) struct FootprintPass {
 }
 
 impl FootprintPass {
-    /// Creates the passes for pictures of up to `width` by `height` samples.
-    pub(super) fn new(builder: &mut Builder<'_>, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
+    /// Creates the passes for pictures of up to `width` by `height` samples; `None` if the settings do
+    /// not ask for them.
+    pub(super) fn of(
+        builder: &mut Builder<'_>,
+        settings: &Settings,
+        [width, height]: [u32; 2],
+    ) -> Result<Option<Self>, RenderError> {
+        if !is_on(settings) {
+            return Ok(None);
+        }
         let pipeline = builder.render_pipeline(&PipelineSource {
             recipe: RESOLVE,
             source: &lapidary_wgsl::recipe_source(RESOLVE),
@@ -40,7 +48,7 @@ impl FootprintPass {
         let [radiance, neighbours] = [("radiance", FORMATS[0]), ("neighbours", FORMATS[1])].map(|(what, format)| {
             builder.target(what, [width, height, 1], format, wgpu::TextureUsages::TEXTURE_BINDING)
         });
-        Ok(Self { pipeline, radiance, neighbours })
+        Ok(Some(Self { pipeline, radiance, neighbours }))
     }
 
     /// Draws the stones, then mixes each sample with its neighbours in this tile.
@@ -56,14 +64,14 @@ impl FootprintPass {
         let view = (clip_from_world, eye);
         let others = gem.variants.iter().any(|variant| !is_smoothed(variant));
         if others {
-            let depth = Depth { texture: depth, load: false, keep: true };
+            let depth = Depth { keep: true, ..depth.into() };
             let target = SceneTarget { colors: vec![self.radiance.into()], depth, size };
             gem.draw_some(builder, ("scene", &|variant| !is_smoothed(variant)), view, &target);
         }
         // Stones come last: what is drawn over one would keep its shares.
         let radiance = Target::from(self.radiance);
         let radiance = Target { clear: radiance.clear.filter(|_| !others), ..radiance };
-        let depth = Depth { texture: depth, load: others, keep: false };
+        let depth = Depth { load: others, ..depth.into() };
         let target = SceneTarget { colors: vec![radiance, self.neighbours.into()], depth, size };
         gem.draw_some(builder, (if others { "stones" } else { "scene" }, &is_smoothed), view, &target);
         let view = Record::new("GemResolveView").with("size", UVec2::from(size));

@@ -6,7 +6,7 @@ use super::light_views::LightView;
 use super::mesh_buffers::MeshBuffers;
 use super::pass::DEPTH_FORMAT;
 use crate::frame::{
-    BindGroupId, Bound, Buffer, Builder, Depth, Frame, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture,
+    BindGroupId, Bound, Buffer, Builder, Frame, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture,
 };
 use crate::record::Record;
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
@@ -93,7 +93,7 @@ impl ReflectiveShadowMaps {
             builder.pass(Pass::Render(RenderPass {
                 name: RECIPE.to_owned(),
                 targets: vec![Target { texture: self.texture, layer, clear: Some(clear) }],
-                depth: Some(Depth { texture: self.depth, load: false, keep: false }),
+                depth: Some(self.depth.into()),
                 viewport: None,
                 draws,
             }));

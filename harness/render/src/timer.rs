@@ -2,11 +2,11 @@
 //! and reads nothing back.
 
 use super::drawing::{apart, scene_pass};
-use super::footprint::{self, FootprintPass};
+use super::footprint::FootprintPass;
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, Stage, display};
-use crate::frame::{Builder, Depth, Executor};
+use crate::frame::{Builder, Executor};
 use crate::solver::Status;
 use glam::Vec2;
 use lapidary_gpu::{Gpu, GpuError};
@@ -61,17 +61,12 @@ impl<'gpu> FrameTimer<'gpu> {
         let stages = pass.prepare(&mut builder);
         let matrix = lapidary_scene::clip_from_world(scene, width, height);
         let view = (matrix, scene.camera.eye);
-        let smooth = footprint::is_on(settings);
-        let footprint = smooth.then(|| FootprintPass::new(&mut builder, size)).transpose()?;
+        let footprint = FootprintPass::of(&mut builder, settings, size)?;
         let start = builder.frame().passes.len();
         if let Some(footprint) = footprint {
             footprint.draw(&mut builder, &pass, view, (color, depth), size);
         } else {
-            let target = SceneTarget {
-                colors: vec![color.into()],
-                depth: Depth { texture: depth, load: false, keep: false },
-                size,
-            };
+            let target = SceneTarget { colors: vec![color.into()], depth: depth.into(), size };
             pass.draw(&mut builder, view.0, view.1, &target);
         }
         let draw_calls = builder.frame().draw_calls();

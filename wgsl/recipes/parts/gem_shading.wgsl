@@ -238,8 +238,8 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
 }
 
 // Takes a ray as far as its next facet. Returns whether it is followed there. The loops below `break`
-// only with LIMIT_THROUGHPUT or END_AT_FIRST_EXIT: without a `break` a compiler may unroll them, and few rays end before
-// the last bounce for other reasons.
+// only with LIMIT_THROUGHPUT or END_AT_FIRST_EXIT: without a `break` a compiler may unroll them, and
+// few rays end before the last bounce for other reasons.
 fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
     if ((*ray).followed) {
         (*ray).travelled += hit.distance;

@@ -118,8 +118,13 @@ pub(super) fn require_finite(what: &str, width: u32, pixels: &[[f32; 4]]) -> Res
 
 /// Returns the FLIP map of the encoded picture against `reference`, RGB of the same size.
 fn flip_map(seen: &Picture, reference: &[u8]) -> nv_flip::FlipImageFloat {
-    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
-    nv_flip::flip(image(reference), image(&rgb(seen)), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
+    flip_of_rgb((seen.width, seen.height), &rgb(seen), reference)
+}
+
+/// Returns the FLIP map of encoded RGB against a reference, both of this width and height.
+pub(crate) fn flip_of_rgb((width, height): (u32, u32), seen: &[u8], reference: &[u8]) -> nv_flip::FlipImageFloat {
+    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(width, height, data);
+    nv_flip::flip(image(reference), image(seen), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
 }
 
 fn rgb(picture: &Picture) -> Vec<u8> {

@@ -2,10 +2,11 @@
 
 use glam::Vec4;
 use lapidary_assay::extremum::larger;
+use lapidary_cook::cost::gem::{change, views};
 use lapidary_plan::Effects;
 use lapidary_render as render;
 use lapidary_render::{GemOptions, Picture, Settings};
-use lapidary_scene::{Camera, Copies, Object, Place, Scene};
+use lapidary_scene::{Copies, Object, Place, Scene};
 
 fn settings(rung: &str, samples: u32, footprint: bool) -> Settings {
     let gem = GemOptions { footprint, ..GemOptions::default() };
@@ -14,25 +15,6 @@ fn settings(rung: &str, samples: u32, footprint: bool) -> Settings {
 
 fn picture(scene: &Scene, rung: &str, samples: u32, footprint: bool) -> Picture {
     render::render(super::gpu(), scene, &settings(rung, samples, footprint)).expect("rendered")
-}
-
-/// Returns the root of the squared difference of two pictures over the power of a third.
-fn apart(one: &Picture, other: &Picture, of: &Picture) -> f64 {
-    let sum =
-        |pairs: &mut dyn Iterator<Item = (f32, f32)>| -> f64 { pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum() };
-    let channels =
-        |picture: &Picture| picture.linear.iter().flat_map(|pixel| pixel[..3].to_vec()).collect::<Vec<f32>>();
-    let [one, other, of] = [one, other, of].map(channels);
-    let power = sum(&mut of.into_iter().map(|value| (value, 0.0)));
-    (sum(&mut one.into_iter().zip(other)) / power).sqrt()
-}
-
-/// Returns the scene seen from a twentieth of a degree aside.
-fn turned(scene: &Scene) -> Scene {
-    let camera = scene.camera;
-    let turn = glam::Quat::from_axis_angle(camera.up.normalize(), 0.05f32.to_radians());
-    let eye = camera.target + turn * (camera.eye - camera.target);
-    Scene { camera: Camera { eye, ..camera }, ..scene.clone() }
 }
 
 /// One sample per pixel is about half as far from the picture of 64, and changes about half as much
@@ -56,8 +38,8 @@ fn check(scene: &Scene, rung: &str, most: f64) {
     let converged = picture(scene, rung, 8, false);
     let [plain, smooth] = [false, true].map(|footprint| {
         let now = picture(scene, rung, 1, footprint);
-        let change = apart(&now, &picture(&turned(scene), rung, 1, footprint), &converged);
-        (apart(&now, &converged, &converged), change)
+        let steady = change(&now, &picture(&views::turned(scene), rung, 1, footprint), &converged);
+        (change(&now, &converged, &converged), steady)
     });
     println!("{} {rung}: error {} to {}, change {} to {}", scene.name, plain.0, smooth.0, plain.1, smooth.1);
     assert!(smooth.0 <= most * plain.0 && smooth.1 <= most * plain.1, "{}: {plain:?}, {smooth:?}", scene.name);

@@ -328,6 +328,13 @@ pub struct Depth {
     pub keep: bool,
 }
 
+impl From<Texture> for Depth {
+    /// Is cleared, and not kept.
+    fn from(texture: Texture) -> Self {
+        Self { texture, load: false, keep: false }
+    }
+}
+
 impl From<Texture> for Target {
     /// Takes the first layer, cleared to 0.
     fn from(texture: Texture) -> Self {

@@ -14,6 +14,7 @@ pub mod views;
 
 pub use error::Errors;
 pub use profile::profile;
+pub use seen::change;
 
 use super::timing::{self, Timed};
 use super::{CostError, Ladder, Progress, Report, Row};

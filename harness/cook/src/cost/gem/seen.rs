@@ -60,7 +60,7 @@ impl Watched {
 
 /// Returns the RMS difference in linear radiance of two frames, divided by the reference's root mean
 /// square.
-fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
+pub fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
     let channels = |picture: &Picture| -> Vec<f64> {
         picture.linear.iter().flat_map(|pixel| &pixel[..3]).map(|value| f64::from(*value)).collect()
     };
@@ -74,11 +74,9 @@ pub(super) const STEADY: &str = "walk-8+tracker";
 /// The view's name of a mean over the views.
 pub(super) const MEAN: &str = "mean over the views";
 
-/// One sample per pixel that takes shares of its neighbours.
-pub(super) const SMOOTH: &str = "1, edges smoothed";
 /// The ways to sample a pixel: name, samples along each side, and whether facets' edges are smoothed.
 const WAYS: [(&str, u32, bool); 5] =
-    [("1", 1, false), (SMOOTH, 1, true), ("4", 2, false), ("16", 4, false), ("64", 8, false)];
+    [("1", 1, false), ("1, edges smoothed", 1, true), ("4", 2, false), ("16", 4, false), ("64", 8, false)];
 /// What is measured of each way: the error to the reference, the distance from the rung's own picture
 /// of 64 samples, and the change to the next frame.
 pub(super) const STEADINESS: [&str; 3] = ["flip with ", "apart with ", "change with "];
