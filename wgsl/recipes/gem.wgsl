@@ -1,8 +1,8 @@
 // gem: a transparent stone by proxy geometry, in one draw call and without any data but the soft-edged mesh.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
-// requires: absorption, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: mesh, mesh_normals, surroundings, gem_shading, gem_apart
+// requires: absorption, bounds_trace, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
+// parts: mesh, mesh_normals, surroundings, screen, bodies, gem_shading, gem_apart
 // compares: closest_point
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh is read from storage buffers, so

@@ -52,7 +52,7 @@ impl Decisions {
                 (chosen.rung(), Some(chosen))
             }
         };
-        let case = Case { object, material: &object.material, lights: &scene.lights, request, rung };
+        let case = Case { object, material: &object.material, scene, request, rung };
         let decide = |effect: Effect| {
             let (on, reason) = case.decide(effect);
             if on && request.without.has(effect) {
@@ -98,7 +98,7 @@ fn way_of(geometry: Geometry) -> &'static str {
 struct Case<'a> {
     object: &'a Object,
     material: &'a Material,
-    lights: &'a [Light],
+    scene: &'a Scene,
     request: &'a Request<'a>,
     rung: Rung,
 }
@@ -132,6 +132,8 @@ impl Case<'_> {
             Effect::Dispersion => self.dispersion(),
             Effect::Instances => self.instances(),
             Effect::Footprint => self.footprint(),
+            Effect::ScreenTrace => self.screen_trace(),
+            Effect::BoundsTrace => self.bounds_trace(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::OpticalPath => self.optical_path(),
@@ -248,6 +250,35 @@ impl Case<'_> {
         }
     }
 
+    fn screen_trace(&self) -> Answer {
+        if !self.request.outside.has_screen() {
+            return off("not asked for");
+        }
+        if !self.is_gem() {
+            return off(self.not_clear());
+        }
+        let opaque = self.scene.objects.iter().filter(|other| !other.material.is_clear()).count();
+        match opaque {
+            0 => off("all bodies are clear"),
+            1 => on("asked for, 1 other body"),
+            _ => on(format!("asked for, {opaque} other bodies")),
+        }
+    }
+
+    fn bounds_trace(&self) -> Answer {
+        if !self.request.outside.has_bodies() {
+            return off("not asked for");
+        }
+        if !self.is_gem() {
+            return off(self.not_clear());
+        }
+        match self.scene.objects.len() {
+            0 | 1 => off("the only body"),
+            2 => on("asked for, 1 other body"),
+            all => on(format!("asked for, {} other bodies", all - 1)),
+        }
+    }
+
     fn cdrf(&self) -> Answer {
         let Rung::Diffuse(reflectance) = self.rung else {
             return match self.rung {
@@ -309,7 +340,7 @@ impl Case<'_> {
             format!("scattering {}, absorption {}", triple(*scattering), triple(*absorption))
         });
         let (through, reason) = self.through(called.as_deref().unwrap_or("the rung"));
-        if through && self.lights.is_empty() {
+        if through && self.scene.lights.is_empty() {
             return off("no light but the environment, which goes no way through bodies");
         }
         (through, reason)
@@ -335,7 +366,7 @@ impl Case<'_> {
         if !grey(medium.scattering) || !grey(medium.absorption) {
             return on("scattering or absorption differs from colour to colour");
         }
-        if !self.lights.iter().map(Light::power).all(grey) {
+        if !self.scene.lights.iter().map(Light::power).all(grey) {
             return on("a light is coloured");
         }
         off("scattering, absorption and lights are grey")
@@ -361,7 +392,7 @@ impl Case<'_> {
             Rung::OpticalPath(_) => return off("part of the rung: ways start where a light sees the body"),
             _ => return off("clear bodies are lit by the environment"),
         };
-        if self.lights.is_empty() {
+        if self.scene.lights.is_empty() {
             return off("no light but the environment, which casts none");
         }
         on(called)
@@ -395,7 +426,7 @@ impl Case<'_> {
         if roughness == 0.0 {
             return off("roughness 0: polished");
         }
-        if self.lights.is_empty() {
+        if self.scene.lights.is_empty() {
             return off("no lights");
         }
         on(format!("roughness {}, ior {}", short(roughness), short(ior)))
@@ -416,7 +447,7 @@ impl Case<'_> {
     }
 
     fn spot(&self) -> Answer {
-        let spots = self.lights.iter().filter(|light| matches!(light, Light::Spot { .. })).count();
+        let spots = self.scene.lights.iter().filter(|light| matches!(light, Light::Spot { .. })).count();
         if self.is_gem() {
             return off("clear bodies are lit by the environment");
         }

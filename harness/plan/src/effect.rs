@@ -55,6 +55,10 @@ effects! {
     Instances = "instances", "EFFECT_INSTANCES";
     /// Facets' edges inside a clear stone, smoothed from one sample per pixel.
     Footprint = "footprint", "EFFECT_FOOTPRINT";
+    /// Bodies that the picture shows, met by what leaves a clear stone.
+    ScreenTrace = "screen_trace", "EFFECT_SCREEN_TRACE";
+    /// Bounds of other bodies, met by what leaves a clear stone.
+    BoundsTrace = "bounds_trace", "EFFECT_BOUNDS_TRACE";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

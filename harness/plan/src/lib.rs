@@ -23,6 +23,7 @@ pub mod ladder;
 mod note;
 mod notes;
 mod numbers;
+mod outside;
 pub mod quality;
 mod rung;
 pub mod thickness;
@@ -32,6 +33,7 @@ pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use note::{Note, Objects};
 pub use notes::of as notes;
+pub use outside::Outside;
 pub use quality::{Quality, Technique};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 
@@ -55,6 +57,8 @@ pub struct Request<'a> {
     pub shadows: bool,
     /// Whether facets' edges inside clear stones are smoothed from one sample per pixel.
     pub footprint: bool,
+    /// What light that leaves a clear stone meets.
+    pub outside: Outside,
     /// The light around the scene.
     pub environment: &'a Environment,
     /// Factor applied to radiance before the tone curve.
@@ -73,6 +77,7 @@ impl Request<'_> {
             scattering: None,
             shadows: false,
             footprint: false,
+            outside: Outside::Environment,
             environment: &Environment::Studio,
             exposure: 1.0,
         }

@@ -74,7 +74,7 @@ impl DeferredPass {
             depth: Depth { keep: true, ..self.depth.into() },
             size,
         };
-        gem.draw(builder, clip_from_world, eye, &target);
+        gem.draw(builder, ("scene", &|_| true), (clip_from_world, eye, &[]), &target);
         // In f64: the inverse of a perspective matrix loses digits that the depth still holds.
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
         let view = Record::new("GemCompositeView").with("world_from_clip", world_from_clip).with("eye", eye);

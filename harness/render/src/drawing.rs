@@ -2,9 +2,10 @@
 
 use super::deferred::{self, DeferredPass};
 use super::display::DisplayPass;
-use super::footprint::{self, FootprintPass};
+use super::footprint;
+use super::layers::Layers;
 use super::lighting::Lighting;
-use super::pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::pass::{Before, SAMPLE_FORMAT, ScenePass};
 use super::shadows::Shadows;
 use super::variant::Part;
 use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
@@ -51,7 +52,8 @@ impl Drawing {
         let scene = &*apart(scene, settings);
         let (width, height) = (settings.width, settings.height);
         let display = DisplayPass::new(builder, settings)?;
-        let lighting = Lighting::new(scene, settings);
+        let [columns, rows] = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
+        let lighting = Lighting::new(scene, settings, [columns, rows]);
         let deferred = if settings.gem.deferred {
             let composed = || Cow::Owned(lapidary_wgsl::recipe_source(deferred::COMPOSITE));
             let composite = texts.composite.map_or_else(composed, Cow::Borrowed);
@@ -59,21 +61,16 @@ impl Drawing {
         } else {
             None
         };
-        let [columns, rows] = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
-        let footprint = FootprintPass::of(builder, settings, [columns, rows])?;
         let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
-        let depth = builder.target("depth", [columns, rows, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
+        let layers = Layers::new(builder, &lighting, settings, display.samples, [columns, rows])?;
         pass.prepare(builder);
         for tile in Tile::all(width, height, settings.samples) {
             let view = (camera::clip_from_world(scene, width, height, tile), scene.camera.eye);
             let size = [tile.width * settings.samples, tile.height * settings.samples];
             if let Some(deferred) = &deferred {
                 deferred.draw(builder, &pass, view, display.samples, size);
-            } else if let Some(footprint) = &footprint {
-                footprint.draw(builder, &pass, view, (display.samples, depth), size);
             } else {
-                let target = SceneTarget { colors: vec![display.samples.into()], depth: depth.into(), size };
-                pass.draw(builder, view.0, view.1, &target);
+                layers.draw(builder, &pass, view, size);
             }
             display.encode(builder, tile, settings);
         }
@@ -108,12 +105,12 @@ pub(super) fn scene_pass(
     let mut all = ScenePass::default();
     let parts = Part::all(scene, settings);
     let shadows = Shadows::of(builder, &scene.lights, &parts)?;
+    let is_smoothed = |part: &Part<'_>| part.objects.iter().any(|drawn| drawn.decisions.has(Effect::Footprint));
     for part in &parts {
         let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));
         let source = &*source.map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];
-        let smooth = part.objects.iter().any(|drawn| drawn.decisions.has(Effect::Footprint));
         all.append(match part.rung {
             Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.gem.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
@@ -125,11 +122,13 @@ pub(super) fn scene_pass(
             _ if settings.gem.deferred => {
                 gem::pass(builder, lighting, part, source, ("gem_deferred_fragment", deferred))?
             }
-            _ if smooth => gem::pass(builder, lighting, part, source, ("gem_footprint_fragment", &footprint::FORMATS))?,
+            _ if is_smoothed(part) => {
+                gem::pass(builder, lighting, part, source, ("gem_footprint_fragment", &footprint::FORMATS))?
+            }
             _ => gem::pass(builder, lighting, part, source, ("gem_fragment", forward))?,
         });
     }
-    if footprint::is_on(settings) && all.variants.iter().all(|variant| variant.targets == 1) {
+    if footprint::is_on(settings) && !parts.iter().any(is_smoothed) {
         return Err(RenderError::NoFootprint { rung: settings.rung });
     }
     // Irradiance that is blurred in a texture is shadowed there, so the shadow maps come first.

@@ -40,9 +40,11 @@ pub enum RenderError {
         /// Its defect, such as `is not convex`.
         reason: String,
     },
-    /// An opaque body, which the reference of clear stones would draw as glass.
+    /// A polished opaque body, which the reference of clear stones would draw without its mirror
+    /// image.
     #[error(
-        "object `{object}` is opaque, and the reference draws clear stones, or scattering bodies, alone; take another rung, or leave the object out"
+        "object `{object}` is opaque and polished, and the reference draws opaque bodies matte; give it a roughness above 0, take another \
+         rung, or leave the object out"
     )]
     OpaqueReference {
         /// Name of the object.

@@ -1,11 +1,11 @@
 //! Facets' edges smoothed from one sample per pixel: the gem recipe also writes shares of the
 //! neighbours, and a second pass mixes them.
 
-use super::pass::{SAMPLE_FORMAT, ScenePass, SceneTarget, Variant};
+use super::pass::SAMPLE_FORMAT;
 use super::{RenderError, Settings};
-use crate::frame::{Bound, Builder, Depth, PipelineId, PipelineSource, Target, Texture};
+use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
 use crate::record::Record;
-use glam::{Mat4, UVec2, Vec3};
+use glam::UVec2;
 use lapidary_plan::Effect;
 
 /// Formats of the colour targets: the picture, and shares, for which eight bits suffice.
@@ -22,8 +22,8 @@ pub(super) fn is_on(settings: &Settings) -> bool {
 /// The targets of one tile and the second pass.
 pub(super) struct FootprintPass {
     pipeline: PipelineId,
-    radiance: Texture,
-    neighbours: Texture,
+    pub(super) radiance: Texture,
+    pub(super) neighbours: Texture,
 }
 
 impl FootprintPass {
@@ -51,29 +51,8 @@ impl FootprintPass {
         Ok(Some(Self { pipeline, radiance, neighbours }))
     }
 
-    /// Draws the stones, then mixes each sample with its neighbours in this tile.
-    pub(super) fn draw(
-        &self,
-        builder: &mut Builder<'_>,
-        gem: &ScenePass,
-        (clip_from_world, eye): (Mat4, Vec3),
-        (samples, depth): (Texture, Texture),
-        size: [u32; 2],
-    ) {
-        let is_smoothed = |variant: &Variant| variant.targets == FORMATS.len();
-        let view = (clip_from_world, eye);
-        let others = gem.variants.iter().any(|variant| !is_smoothed(variant));
-        if others {
-            let depth = Depth { keep: true, ..depth.into() };
-            let target = SceneTarget { colors: vec![self.radiance.into()], depth, size };
-            gem.draw_some(builder, ("scene", &|variant| !is_smoothed(variant)), view, &target);
-        }
-        // Stones come last: what is drawn over one would keep its shares.
-        let radiance = Target::from(self.radiance);
-        let radiance = Target { clear: radiance.clear.filter(|_| !others), ..radiance };
-        let depth = Depth { load: others, ..depth.into() };
-        let target = SceneTarget { colors: vec![radiance, self.neighbours.into()], depth, size };
-        gem.draw_some(builder, (if others { "stones" } else { "scene" }, &is_smoothed), view, &target);
+    /// Mixes each sample with its neighbours.
+    pub(super) fn resolve(&self, builder: &mut Builder<'_>, samples: Texture, size: [u32; 2]) {
         let view = Record::new("GemResolveView").with("size", UVec2::from(size));
         let uniform = builder.uniform("resolve's view", view);
         let resources: [(u32, Bound); 3] =

@@ -24,6 +24,7 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
         ("BOUNCES", f64::from(rung.hits())),
         ("REST_FROM_ENVIRONMENT", flag(settings.gem.rest_from_environment)),
         ("END_AT_FIRST_EXIT", flag(settings.gem.end_at_first_exit)),
+        ("SCREEN_STEPS", f64::from(settings.gem.screen_steps)),
         ("LIMIT_DISTANCE", flag(settings.gem.distance_limit.is_some())),
         ("LIMIT_THROUGHPUT", flag(restraint::limits_throughput(rung, settings))),
         ("CENTRE_PAPER", flag(settings.gem.paper_centre)),
@@ -55,6 +56,7 @@ pub(super) fn pass(
         pass.variants.push(Variant {
             shared: lighting.shared(builder, pipeline)?,
             targets: formats.len(),
+            reads_screen: builder.binds(pipeline, 0, 5),
             pipeline,
             bodies,
         });

@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bodies;
 mod camera;
 pub mod cdrf;
 pub mod compute;
@@ -27,7 +28,7 @@ pub mod file;
 mod footprint;
 pub mod frame;
 mod gem;
-mod harmonics;
+mod layers;
 mod light_views;
 mod lighting;
 mod mesh_buffers;
@@ -39,6 +40,7 @@ mod record;
 mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
+mod screen;
 mod settings;
 pub mod shader;
 mod shadows;
@@ -62,11 +64,12 @@ use lapidary_reference::random_walk::mesh;
 use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral::{self, Lost, Rendering, Window};
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Environment, LARGEST_SIDE, Scene};
+use lapidary_scene::{Environment, LARGEST_SIDE, Material, Object, Scene};
 pub use optical_path::Stage;
 pub use reflectance::Curvature;
 pub use settings::{
-    DiffuseOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, Settings, WALKS, WalkOptions,
+    DiffuseOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, SCREEN_STEPS, Settings, WALKS,
+    WalkOptions,
 };
 use std::sync::Mutex;
 pub use stone::geometry_bytes;
@@ -280,7 +283,11 @@ fn follow(
     picture: &mut Picture,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<(), RenderError> {
-    if let Some(opaque) = scene.objects.iter().find(|object| !object.material.is_clear()) {
+    // What is not clear is opaque here, and drawn matte; the same rule as of the effect
+    // `reflection` says whether it also reflects.
+    let reflects = |Material { ior, roughness, .. }: &Material| *ior != 1.0 && *roughness == 0.0;
+    let polished = |object: &&Object| !object.material.is_clear() && reflects(&object.material);
+    if let Some(opaque) = scene.objects.iter().find(polished) {
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }
     let (width, height) = (settings.width, settings.height);
@@ -295,6 +302,7 @@ fn follow(
             wavelengths: settings.reference.wavelengths,
             energy_bound: settings.reference.energy_bound,
             environment: &settings.environment,
+            lit_by_environment: !settings.without.has(Effect::Environment),
             ..spectral::Settings::of_size(settings.width, settings.height)
         };
         let mut of_all = |of_tile: u64, _: u64| progress(done + of_tile, rows);

@@ -1,28 +1,57 @@
 //! Light on a scene: its lights and the environment, as the recipes bind them. Each is added to the
 //! frame when the first pipeline reads it, and only once.
 
-use super::{RenderError, Settings, environment, harmonics};
+use super::screen::{self, Picture};
+use super::{RenderError, Settings, bodies, environment};
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::record::Record;
 use glam::{Vec3, Vec4};
 use lapidary_scene::light::Falloff;
-use lapidary_scene::{Light, Scene};
+use lapidary_scene::{Light, Scene, harmonics};
 use std::cell::OnceCell;
 
-/// Resources of the parts `surroundings`, `lights` and `harmonics`.
+/// Resources of the parts `surroundings`, `lights`, `harmonics`, `screen` and `bodies`.
 pub(super) struct Lighting<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
     environment: OnceCell<Texture>,
     lights: OnceCell<Buffer>,
     harmonics: OnceCell<Buffer>,
+    screen: OnceCell<Picture>,
+    bodies: OnceCell<Buffer>,
+    /// Size of the largest picture in samples.
+    size: [u32; 2],
 }
 
 impl<'a> Lighting<'a> {
-    /// Takes the scene's lights and the settings' environment.
-    pub(super) fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
-        let (environment, lights, harmonics) = Default::default();
-        Self { scene, settings, environment, lights, harmonics }
+    /// Takes the scene's lights and bodies and the settings' environment, for pictures of up to this
+    /// size in samples.
+    pub(super) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
+        let (environment, lights, harmonics, screen, bodies) = Default::default();
+        Self { scene, settings, environment, lights, harmonics, screen, bodies, size }
+    }
+
+    /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how
+    /// far they reach behind their front.
+    pub(super) fn screen_in_use(&self) -> Option<(Picture, f32)> {
+        self.screen.get().map(|picture| (*picture, screen::thickness(self.scene, self.settings)))
+    }
+
+    /// Returns the picture of the bodies that are not clear stones.
+    fn screen(&self, builder: &mut Builder<'_>) -> Result<Picture, RenderError> {
+        if let Some(known) = self.screen.get() {
+            return Ok(*known);
+        }
+        let made = builder.of_object("", |builder| Picture::new(builder, self.size))?;
+        Ok(*self.screen.get_or_init(|| made))
+    }
+
+    /// Returns the bounds of the scene's bodies.
+    fn bodies(&self, builder: &mut Builder<'_>) -> Buffer {
+        *self.bodies.get_or_init(|| {
+            let records = bodies::records(self.scene, &self.settings.environment);
+            builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
+        })
     }
 
     /// Returns the environment's texture.
@@ -54,7 +83,8 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3 of group 0.
+    /// Returns the resources that `pipeline` reads from bindings 1 to 7 of group 0, but 4, the view of
+    /// the screen.
     pub(super) fn shared(
         &self,
         builder: &mut Builder<'_>,
@@ -69,6 +99,13 @@ impl<'a> Lighting<'a> {
         }
         if builder.binds(pipeline, 0, 3) {
             shared.push((3, self.harmonics(builder).into()));
+        }
+        if builder.binds(pipeline, 0, 5) {
+            let picture = self.screen(builder)?;
+            shared.extend([(5, picture.radiance.into()), (6, picture.depth.into())]);
+        }
+        if builder.binds(pipeline, 0, 7) {
+            shared.push((7, self.bodies(builder).into()));
         }
         Ok(shared)
     }

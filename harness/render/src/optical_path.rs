@@ -107,7 +107,7 @@ pub(super) fn pass(
             drawn_bodies.push(body);
             bodies.extend(of_body);
         }
-        pass.variants.push(Variant { pipeline, targets: 1, shared, bodies: drawn_bodies });
+        pass.variants.push(Variant { pipeline, targets: 1, reads_screen: false, shared, bodies: drawn_bodies });
     }
     pass.before.push(Before::Paths(OpticalPaths { maps, bodies }));
     Ok(pass)

@@ -30,6 +30,8 @@ pub(super) struct Variant {
     pub(super) pipeline: PipelineId,
     /// Number of colour targets that the pipeline writes.
     pub(super) targets: usize,
+    /// Whether it reads the picture of the bodies that are not clear stones.
+    pub(super) reads_screen: bool,
     /// Resources of group 0 that the pipeline reads, by binding, from 1 on.
     pub(super) shared: Vec<(u32, Bound)>,
     pub(super) bodies: Vec<Body>,
@@ -89,18 +91,13 @@ impl ScenePass {
         })
     }
 
-    /// Draws the objects as seen from `eye` in one pass: one draw call for each object, with the
-    /// pipeline of its variant.
-    pub(super) fn draw(&self, builder: &mut Builder<'_>, clip_from_world: Mat4, eye: Vec3, target: &SceneTarget) {
-        self.draw_some(builder, ("scene", &|_| true), (clip_from_world, eye), target);
-    }
-
-    /// Draws the objects of some variants in a pass of this name.
-    pub(super) fn draw_some(
+    /// Draws the objects of some variants as seen from an eye, in a pass of this name: one draw call
+    /// for each object, with the pipeline of its variant. `bound` are resources of group 0 of this view.
+    pub(super) fn draw(
         &self,
         builder: &mut Builder<'_>,
         (name, is_drawn): (&str, &dyn Fn(&Variant) -> bool),
-        (clip_from_world, eye): (Mat4, Vec3),
+        (clip_from_world, eye, bound): (Mat4, Vec3, &[(u32, Bound)]),
         target: &SceneTarget,
     ) {
         // All recipes declare the same view struct.
@@ -108,7 +105,7 @@ impl ScenePass {
         let uniform = builder.uniform("view", view);
         let mut draws = Vec::new();
         for variant in self.variants.iter().filter(|variant| is_drawn(variant)) {
-            let resources = [&[(0, Bound::from(uniform))][..], &variant.shared].concat();
+            let resources = [&[(0, Bound::from(uniform))][..], bound, &variant.shared].concat();
             let group = builder.bind(variant.pipeline, 0, &resources);
             for body in &variant.bodies {
                 let groups = [&[group][..], &body.groups].concat();

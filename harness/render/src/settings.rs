@@ -1,7 +1,7 @@
 //! Settings of a picture, and the options of each technique that draws it.
 
 use crate::Curvature;
-use lapidary_plan::{Effects, Quality, Request, Rung, Scattering};
+use lapidary_plan::{Effects, Outside, Quality, Request, Rung, Scattering};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
 use lapidary_scene::{Environment, SAMPLES};
@@ -73,7 +73,17 @@ pub struct GemOptions {
     /// Whether each sample takes shares of its neighbours where an edge of a facet, seen through
     /// others, crosses it; not together with `deferred`.
     pub footprint: bool,
+    /// What light that leaves a stone meets before the environment.
+    pub outside: Outside,
+    /// How far bodies of the picture reach behind their front, in units of length, above 0; `None`
+    /// derives it from the bodies.
+    pub thickness: Option<f32>,
+    /// Steps of a ray over the picture, at least 1.
+    pub screen_steps: u32,
 }
+
+/// Default number of steps of a ray over the picture.
+pub const SCREEN_STEPS: u32 = 32;
 
 impl Default for GemOptions {
     fn default() -> Self {
@@ -86,6 +96,9 @@ impl Default for GemOptions {
             limit_throughput: None,
             deferred: false,
             footprint: false,
+            outside: Outside::Environment,
+            thickness: None,
+            screen_steps: SCREEN_STEPS,
         }
     }
 }
@@ -186,6 +199,7 @@ impl Settings {
             scattering: self.scattering,
             shadows: self.shadows,
             footprint: self.gem.footprint,
+            outside: self.gem.outside,
             environment: &self.environment,
             exposure: self.exposure,
         }

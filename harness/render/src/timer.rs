@@ -2,9 +2,9 @@
 //! and reads nothing back.
 
 use super::drawing::{apart, scene_pass};
-use super::footprint::FootprintPass;
+use super::layers::Layers;
 use super::lighting::Lighting;
-use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::pass::{SAMPLE_FORMAT, ScenePass};
 use super::{RenderError, Settings, Stage, display};
 use crate::frame::{Builder, Executor};
 use crate::solver::Status;
@@ -52,23 +52,18 @@ impl<'gpu> FrameTimer<'gpu> {
     ) -> Result<Self, RenderError> {
         let scene = &*apart(scene, settings);
         let mut builder = Builder::new(Some(gpu));
-        let pass = scene_pass(&mut builder, &Lighting::new(scene, settings), scene, settings, source)?;
         let size = [settings.width, settings.height];
+        let lighting = Lighting::new(scene, settings, size);
+        let pass = scene_pass(&mut builder, &lighting, scene, settings, source)?;
         let [width, height] = size;
         let usage = wgpu::TextureUsages::TEXTURE_BINDING;
         let color = builder.target("samples", [width, height, 1], SAMPLE_FORMAT, usage);
-        let depth = builder.target("depth", [width, height, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
         let stages = pass.prepare(&mut builder);
         let matrix = lapidary_scene::clip_from_world(scene, width, height);
         let view = (matrix, scene.camera.eye);
-        let footprint = FootprintPass::of(&mut builder, settings, size)?;
+        let layers = Layers::new(&mut builder, &lighting, settings, color, size)?;
         let start = builder.frame().passes.len();
-        if let Some(footprint) = footprint {
-            footprint.draw(&mut builder, &pass, view, (color, depth), size);
-        } else {
-            let target = SceneTarget { colors: vec![color.into()], depth: depth.into(), size };
-            pass.draw(&mut builder, view.0, view.1, &target);
-        }
+        layers.draw(&mut builder, &pass, view, size);
         let draw_calls = builder.frame().draw_calls();
         if displayed {
             let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;

@@ -50,7 +50,8 @@ pub(super) fn pass(
             bodies.push(body);
             pass.before.extend(diffusion.map(Before::Diffusion));
         }
-        pass.variants.push(Variant { shared: shared(builder, light, pipeline)?, targets: 1, pipeline, bodies });
+        let shared = shared(builder, light, pipeline)?;
+        pass.variants.push(Variant { shared, targets: 1, reads_screen: false, pipeline, bodies });
     }
     Ok(pass)
 }

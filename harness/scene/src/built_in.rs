@@ -13,6 +13,7 @@ mod pave;
 mod prisms;
 mod stone;
 mod translucent;
+mod tray;
 mod vitrine;
 
 /// A scene that needs no file.
@@ -25,7 +26,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 29] = [
+pub const BUILT_IN: [BuiltIn; 30] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -81,6 +82,12 @@ pub const BUILT_IN: [BuiltIn; 29] = [
         name: "pave_ring",
         description: "A band of 200 brilliants of corundum, set close in five rows round a ring, in all colours of \
             sapphire from violet to ruby. One shape, one draw call, 80 bytes for each stone.",
+    },
+    BuiltIn {
+        name: "tray",
+        description: "A diamond that leans on its pavilion and an emerald on its table, on a red tray between a blue ball and a \
+            yellow block, all matte. Half of what leaves the stones meets the tray, the things on it or the other stone: \
+            the scene to judge `--outside` by.",
     },
     BuiltIn {
         name: "bunny_stone",
@@ -203,6 +210,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         // From a little below, as one looks up at it, so that the inner rings show below the outer.
         "chandelier" => Ok(scene(name, prisms::chandelier()?, materials::flint_glass(), (105.0, 9.0))),
         "pave_ring" => pave::ring(name),
+        "tray" => tray::tray(name),
         "bunny_stone" => bunny_stone(name),
         "brilliant_fan" => diamond(name, Averaging::default(), Triangulation::Fan),
         "brilliant_strip" => diamond(name, Averaging::default(), Triangulation::Strip),

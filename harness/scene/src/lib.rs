@@ -32,6 +32,7 @@ pub mod environment_map;
 mod error;
 pub mod glb;
 pub mod gltf;
+pub mod harmonics;
 pub mod layout;
 pub mod light;
 pub mod material;

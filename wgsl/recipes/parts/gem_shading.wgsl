@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the part surroundings, and mesh if it reads one; struct GemVertex, whose members include
+// A geometry recipe adds: the parts surroundings, screen and bodies, and mesh if it reads one; struct GemVertex, whose members include
 // `position`, `face_normal` and, with instances, `instance`; the entry point gem_vertex; struct
 // GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
 // gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
@@ -176,9 +176,61 @@ fn gem_world_length(length_inside: f32) -> f32 {
     return length_inside;
 }
 
-// Radiance that arrives from a direction in the stone's space.
-fn gem_surroundings(direction: vec3f) -> vec3f {
+// World position of a position in the stone's space.
+fn gem_world_position(position: vec3f) -> vec3f {
+    if (EFFECT_INSTANCES) {
+        return gem_copy.scale * (position * gem_copy.rotation) + gem_copy.translation;
+    }
+    return position;
+}
+
+// What a ray that leaves the stone meets, before the environment.
+struct GemMeeting {
+    // Distance in world space of a body that the picture shows; below 0 if there is none.
+    distance: f32,
+    // Whether a body's bounds are met, and the radiance that it sends.
+    is_bounded: bool,
+    bounded: vec3f,
+}
+
+// Looks for what a ray meets, both in the stone's space.
+fn gem_meeting(position: vec3f, direction: vec3f) -> GemMeeting {
+    var meeting = GemMeeting(-1.0f, false, vec3f(0.0f));
+    if (EFFECT_SCREEN_TRACE) {
+        meeting.distance = screen_distance(gem_world_position(position), gem_world_direction(direction));
+    }
+    if (EFFECT_BOUNDS_TRACE) {
+        let hit = bodies_hit(gem_world_position(position), gem_world_direction(direction));
+        if (hit.number != BODIES_NONE) {
+            meeting.is_bounded = true;
+            meeting.bounded = bodies_radiance(hit, gem_world_position(position), gem_world_direction(direction));
+        }
+    }
+    return meeting;
+}
+
+// Radiance that arrives along a ray, given what a ray beside it meets: the colours of one pixel leave
+// a facet together.
+fn gem_arriving(meeting: GemMeeting, position: vec3f, direction: vec3f) -> vec3f {
+    if (EFFECT_SCREEN_TRACE) {
+        if (meeting.distance >= 0.0f) {
+            let seen = screen_seen(gem_world_position(position) + meeting.distance * gem_world_direction(direction));
+            if (seen.a > 0.0f) {
+                return seen.rgb;
+            }
+        }
+    }
+    if (EFFECT_BOUNDS_TRACE) {
+        if (meeting.is_bounded) {
+            return meeting.bounded;
+        }
+    }
     return surroundings_radiance(gem_world_direction(direction));
+}
+
+// Radiance that arrives at a position from a direction, both in the stone's space.
+fn gem_surroundings(position: vec3f, direction: vec3f) -> vec3f {
+    return gem_arriving(gem_meeting(position, direction), position, direction);
 }
 
 fn gem_base_color() -> vec3f {
@@ -274,7 +326,7 @@ fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
     }
 }
 
-// The total radiance of a ray that has ended: the radiance found, and the environment for the rest.
+// The total radiance of a ray that has ended: the radiance found, and what lies outside for the rest.
 fn gem_end(ray: GemRay, outside: vec3f) -> vec3f {
     return ray.radiance + ray.throughput * outside;
 }
@@ -292,28 +344,34 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
         if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
-                gem_leave(&ray, vec3f(exit.share), gem_surroundings(exit.direction));
+                gem_leave(&ray, vec3f(exit.share), gem_surroundings(hit.point, exit.direction));
             }
             gem_reflect(&ray, hit);
         }
     }
     if (REST_FROM_ENVIRONMENT) {
-        return gem_end(ray, gem_surroundings(ray.direction));
+        return gem_end(ray, gem_surroundings(ray.position, ray.direction));
     }
     return ray.radiance;
 }
 
-// Radiance of the environment from three directions, one per channel.
-fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
-    return vec3f(gem_surroundings(red).r, gem_surroundings(green).g, gem_surroundings(blue).b);
+// Radiance that arrives at a position from three directions, one per channel.
+fn gem_surroundings_channels(position: vec3f, red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
+    let meeting = gem_meeting(position, green);
+    return vec3f(
+        gem_arriving(meeting, position, red).r,
+        gem_arriving(meeting, position, green).g,
+        gem_arriving(meeting, position, blue).b,
+    );
 }
 
-fn gem_environment_red_green(red: vec3f, green: vec3f) -> vec3f {
-    return vec3f(gem_surroundings(red).r, gem_surroundings(green).g, 0.0f);
+fn gem_surroundings_red_green(position: vec3f, red: vec3f, green: vec3f) -> vec3f {
+    let meeting = gem_meeting(position, green);
+    return vec3f(gem_arriving(meeting, position, red).r, gem_arriving(meeting, position, green).g, 0.0f);
 }
 
-fn gem_environment_blue(blue: vec3f) -> vec3f {
-    return vec3f(0.0f, 0.0f, gem_surroundings(blue).b);
+fn gem_surroundings_blue(position: vec3f, blue: vec3f) -> vec3f {
+    return vec3f(0.0f, 0.0f, gem_surroundings(position, blue).b);
 }
 
 // Radiance of three channels inside the stone, from one ray at the d line and its derivative with
@@ -336,14 +394,15 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
             let blue = gem_exit(dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b);
             let share = vec3f(red.share, green.share, blue.share);
             if (any(share > vec3f(0.0f))) {
-                gem_leave(&ray, share, gem_environment_channels(red.direction, green.direction, blue.direction));
+                gem_leave(&ray, share, gem_surroundings_channels(hit.point, red.direction, green.direction, blue.direction));
             }
             gem_reflect(&ray, hit);
             gradient = dispersion_reflect(gradient, hit.normal);
         }
     }
     if (REST_FROM_ENVIRONMENT) {
-        return gem_end(ray, gem_environment_channels(
+        return gem_end(ray, gem_surroundings_channels(
+            ray.position,
             dispersion_direction(ray.direction, gradient, offsets.r),
             dispersion_direction(ray.direction, gradient, offsets.g),
             dispersion_direction(ray.direction, gradient, offsets.b),
@@ -375,7 +434,7 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
             let green = gem_exit(ray.direction, hits.first.normal, indices.g);
             if (red.share > 0.0f || green.share > 0.0f) {
-                let outside = gem_environment_red_green(red.direction, green.direction);
+                let outside = gem_surroundings_red_green(hits.first.point, red.direction, green.direction);
                 gem_leave(&ray, vec3f(red.share, green.share, 0.0f), outside);
             }
             gem_reflect(&ray, hits.first);
@@ -384,23 +443,25 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
         if (gem_arrive(&blue, hits.second)) {
             let exit = gem_exit(blue.direction, hits.second.normal, indices.b);
             if (exit.share > 0.0f) {
-                gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share), gem_environment_blue(exit.direction));
+                gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share), gem_surroundings_blue(hits.second.point, exit.direction));
             }
             gem_reflect(&blue, hits.second);
         }
     }
     if (REST_FROM_ENVIRONMENT) {
         let red = dispersion_direction(ray.direction, gradient, offset);
-        return gem_end(ray, gem_environment_red_green(red, ray.direction)) + gem_end(blue, gem_environment_blue(blue.direction));
+        let outside = gem_surroundings_red_green(ray.position, red, ray.direction);
+        return gem_end(ray, outside) + gem_end(blue, gem_surroundings_blue(blue.position, blue.direction));
     }
     return ray.radiance + blue.radiance;
 }
 
 // Radiance around a red ray, with green and blue shifted along the paper's direction of dispersion,
 // eq. (12).
-fn gem_environment_paper(red: vec3f, spread: vec3f, travelled_inside: f32) -> vec3f {
+fn gem_surroundings_paper(position: vec3f, red: vec3f, spread: vec3f, travelled_inside: f32) -> vec3f {
     let travelled = gem_world_length(travelled_inside);
-    return gem_environment_channels(
+    return gem_surroundings_channels(
+        position,
         red,
         dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_GREEN, material.dispersion_strength),
         dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_BLUE, material.dispersion_strength),
@@ -423,14 +484,15 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
                 let leaving = dispersion_paper_refract(ray.direction, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
-                gem_leave(&ray, vec3f(exit.share), gem_environment_paper(exit.direction, leaving, ray.travelled));
+                let outside = gem_surroundings_paper(hit.point, exit.direction, leaving, ray.travelled);
+                gem_leave(&ray, vec3f(exit.share), outside);
             }
             spread = dispersion_paper_reflect(ray.direction, spread, hit.normal, DISPERSION_PAPER_EPSILON);
             gem_reflect(&ray, hit);
         }
     }
     if (REST_FROM_ENVIRONMENT) {
-        return gem_end(ray, gem_environment_paper(ray.direction, spread, ray.travelled));
+        return gem_end(ray, gem_surroundings_paper(ray.position, ray.direction, spread, ray.travelled));
     }
     return ray.radiance;
 }
@@ -461,10 +523,10 @@ fn gem_radiance(
 ) -> GemRadiance {
     let direction = normalize(input.position - gem_eye(input));
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
-    let reflected = gem_surroundings(refraction_reflect(direction, input.face_normal));
+    let reflected = gem_surroundings(input.position, refraction_reflect(direction, input.face_normal));
     if (EFFECT_THIN_WALL) {
         let reflectance = vec3f(fresnel_dielectric(cosine, material.index));
-        let behind = gem_surroundings(direction);
+        let behind = gem_surroundings(input.position, direction);
         return GemRadiance(reflectance * reflected, (1.0f - reflectance) * gem_base_color() * behind, reflectance);
     }
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {

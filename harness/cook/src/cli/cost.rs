@@ -3,7 +3,7 @@
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
 use lapidary_cook::cost::{
-    CostError, Ladder, Options, Progress, Report, cdrf, effects, optical_path, page, restraint, sphere,
+    CostError, Ladder, Options, Progress, Report, cdrf, effects, optical_path, outside, page, restraint, sphere,
 };
 use lapidary_cook::text_file;
 use lapidary_gpu::Gpu;
@@ -37,6 +37,9 @@ enum Technique {
     OpticalPath(Rungs),
     /// Cost of each effect alone, of none, and of all: time, instructions and bytes.
     Effects(Timed),
+    /// What light that leaves a stone meets: the environment, the picture, or bounds of other bodies;
+    /// error and time of each.
+    Outside(Timed),
     /// Savings from skipping work that a pixel or a tile does not need. Ends rays whose contribution
     /// can no longer be seen, traces optical paths only in tiles with matter, and compares one
     /// recipe variant per material with one for all. Takes minutes.
@@ -149,6 +152,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let options = timed(effects::options(), arguments.rounds);
             let measure = |gpu: &Gpu, progress: Progress<'_>| effects::run(gpu, &options, progress);
             show(&effects::LADDER, &arguments.shown, || on_gpu(context, measure))
+        }
+        Technique::Outside(arguments) => {
+            let options = timed(outside::options(), arguments.rounds);
+            let measure = |gpu: &Gpu, progress: Progress<'_>| outside::run(gpu, &options, progress);
+            show(&outside::LADDER, &arguments.shown, || on_gpu(context, measure))
         }
         Technique::Restraint(arguments) => {
             if let Some(rung) = arguments.rungs.iter().find(|rung| !matches!(rung, Rung::Inside { .. })) {

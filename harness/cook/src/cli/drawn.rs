@@ -3,7 +3,7 @@
 
 use super::asked::Asked;
 use super::{Failure, number};
-use lapidary_plan::{Decisions, Geometry, Note, Rung, Spectrum};
+use lapidary_plan::{Decisions, Geometry, Note, Outside, Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
@@ -59,6 +59,13 @@ struct Gem {
     /// pass; for the rungs walk-HITS, except with separate wavelengths.
     #[arg(long, conflicts_with = "deferred")]
     footprint: bool,
+    /// What light that leaves a stone meets: the environment alone (the default), the bounds of a few
+    /// other bodies, other bodies as the picture shows them (screen), or screen+bodies.
+    #[arg(long, value_name = "WHAT")]
+    outside: Option<Outside>,
+    /// How far bodies of the picture reach behind their front, for --outside screen, in units of length.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    thickness: Option<f32>,
     /// Centre of the proxy: stable (the default), or the paper's eq. (4).
     #[arg(long, value_name = "FORM", value_parser = ["stable", "paper"])]
     centre: Option<String>,
@@ -130,6 +137,9 @@ impl Gem {
             limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
             deferred: self.deferred,
             footprint: self.footprint,
+            outside: self.outside.unwrap_or_default(),
+            thickness: self.thickness,
+            ..usual
         }
     }
 
@@ -146,7 +156,13 @@ impl Gem {
                 ("--centre paper", centre),
             ])
         };
-        let all = [inside(), given([("--deferred", self.deferred), ("--footprint", self.footprint)])].concat();
+        let around = given([
+            ("--deferred", self.deferred),
+            ("--footprint", self.footprint),
+            ("--outside", self.outside.is_some()),
+            ("--thickness", self.thickness.is_some()),
+        ]);
+        let all = [inside(), around].concat();
         [
             Given {
                 technique: "the gem recipes",

@@ -8,6 +8,7 @@ pub mod cdrf;
 pub mod effects;
 pub mod gem;
 pub mod optical_path;
+pub mod outside;
 pub mod page;
 pub mod plot;
 mod quality;
@@ -53,8 +54,15 @@ pub struct Ladder {
 }
 
 /// All ladders.
-pub const LADDERS: [Ladder; 6] =
-    [gem::LADDER, cdrf::LADDER, optical_path::LADDER, effects::LADDER, restraint::LADDER, sphere::LADDER];
+pub const LADDERS: [Ladder; 7] = [
+    gem::LADDER,
+    cdrf::LADDER,
+    optical_path::LADDER,
+    effects::LADDER,
+    outside::LADDER,
+    restraint::LADDER,
+    sphere::LADDER,
+];
 
 /// Why a ladder could not be measured or shown.
 #[derive(Debug, thiserror::Error)]

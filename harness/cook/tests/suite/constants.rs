@@ -29,6 +29,8 @@ mirrored! {
     cdrf, lapidary_cdrf: CDRF_SWITCH CDRF_CHEAP_SWITCH CDRF_SPHERICAL_SWITCH CDRF_WIDEST CDRF_SMALLEST;
     closest_point, lapidary_closest_point: CLOSEST_POINT_REGULARISATION CLOSEST_POINT_SLIVER;
     convex_trace, lapidary_convex_trace: CONVEX_TRACE_NONE CONVEX_TRACE_FAR;
+    bounds_trace, lapidary_bounds_trace: BOUNDS_TRACE_NONE BOUNDS_TRACE_PARALLEL;
+    screen_trace, lapidary_screen_trace: SCREEN_TRACE_FAR SCREEN_TRACE_PARALLEL;
     convex_walk, lapidary_convex_walk: CONVEX_WALK_FACE CONVEX_WALK_SHIFT CONVEX_WALK_PLACE CONVEX_WALK_MORE
         CONVEX_WALK_STEPS CONVEX_WALK_PARALLEL;
     curvature, lapidary_curvature: CURVATURE_SMALLEST CURVATURE_EDGE_ON CURVATURE_ZENITH;

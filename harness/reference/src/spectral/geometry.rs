@@ -2,6 +2,7 @@
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
+use super::matte::Mattes;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
 use lapidary_scene::polyhedron::Plane;
@@ -39,6 +40,7 @@ pub(crate) struct Place {
 pub(crate) struct Bodies {
     bodies: Vec<Body>,
     tree: Bvh,
+    mattes: Mattes,
 }
 
 enum Body {
@@ -47,7 +49,13 @@ enum Body {
 }
 
 impl Bodies {
+    /// Takes all bodies as clear, whatever their materials are.
     pub(crate) fn new(objects: &[Object], geometry: Geometry) -> Self {
+        Self::with_mattes(objects, geometry, Mattes::default())
+    }
+
+    /// Matte bodies are always met by their triangles, whose corners have the normals.
+    pub(super) fn with_mattes(objects: &[Object], geometry: Geometry, mattes: Mattes) -> Self {
         let extents: Vec<Extent> = objects
             .iter()
             .map(|object| {
@@ -56,15 +64,21 @@ impl Bodies {
                 extent.padded(TOLERANCE * extent.largest_coordinate())
             })
             .collect();
-        let body = |(object, extent): (&Object, &Extent)| {
-            let planes = (geometry == Geometry::Planes).then(|| planes_of_convex(&object.mesh)).flatten();
-            match planes {
+        let body = |(number, (object, extent)): (usize, (&Object, &Extent))| {
+            let by_planes = geometry == Geometry::Planes && !mattes.has(number);
+            match by_planes.then(|| planes_of_convex(&object.mesh)).flatten() {
                 Some(planes) => Body::Convex(Planes::new(planes, extent)),
                 None => Body::Triangles(Triangles::new(&object.mesh)),
             }
         };
-        let bodies = objects.iter().zip(&extents).map(body).collect();
-        Self { bodies, tree: Bvh::new(&extents) }
+        let bodies = objects.iter().zip(&extents).enumerate().map(body).collect();
+        Self { bodies, tree: Bvh::new(&extents), mattes }
+    }
+
+    /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
+    /// the body is clear.
+    pub(super) fn sent(&self, hit: &Hit, point: DVec3) -> Option<DVec3> {
+        self.mattes.sent(hit, point)
     }
 
     /// Finds where a ray from outside first enters a body; `left` is the face that it comes from.

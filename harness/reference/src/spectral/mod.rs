@@ -1,4 +1,5 @@
-//! The spectral reference: renders clear stones by following light along all its paths.
+//! The spectral reference: renders clear stones, with opaque bodies beside them, by following light
+//! along all its paths.
 //!
 //! Every ray that meets a surface is split into its reflection and its refraction by the oracles of
 //! `fresnel` and `refraction`, separately at each wavelength, in f64, until the remaining energy is
@@ -6,13 +7,22 @@
 //! and [`Lost`] says by how much at most. Nothing is random, so two runs give the same image.
 //!
 //! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not
-//! overlap; a ray that leaves one may enter another, or the same one again. Surfaces are flat:
-//! shared normals are ignored. Light is multiplied by the base colour on entry and absorbed by the
-//! attenuation colour inside, channel by channel, as in glTF and the gem recipes.
+//! overlap; a ray that leaves one may enter another, or the same one again. Surfaces of clear bodies
+//! are flat: shared normals are ignored. Light is multiplied by the base colour on entry and
+//! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes.
+//!
+//! An opaque body is matte: it sends the same radiance in all directions, base colour / π times the
+//! irradiance, and ends every ray that meets it. The irradiance is that of the recipe
+//! `cdrf_shading` without shadows: the environment by its spherical harmonics, and each light, at
+//! the shared normals, interpolated between a triangle's corners. So stones show opaque bodies, but
+//! neither shade them nor throw light on them. What such a surface itself reflects is left out: the
+//! highlights of lights on a rough one, and the mirror image in a polished one, which
+//! `lapidary-render` refuses. Bodies that scatter light are taken as clear.
 
 mod bvh;
 mod cells;
 pub(crate) mod geometry;
+mod matte;
 mod trace;
 
 pub use geometry::Geometry;
@@ -23,9 +33,10 @@ use lapidary_absorption::oracle as absorption;
 use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Object, SAMPLES, Scene};
+use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use trace::{Optics, Surroundings};
+use trace::{Optics, Primary, Surroundings};
 
 /// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
@@ -53,6 +64,8 @@ pub struct Settings<'environment> {
     pub energy_bound: f64,
     /// Environment that lights the scene.
     pub environment: &'environment Environment,
+    /// Whether the environment lights matte bodies too, and not only the stones.
+    pub lit_by_environment: bool,
     /// Representation of bodies for ray intersection.
     pub geometry: Geometry,
 }
@@ -70,6 +83,7 @@ impl Settings<'static> {
             samples: SAMPLES,
             energy_bound: ENERGY_BOUND,
             environment: &Environment::Studio,
+            lit_by_environment: true,
             geometry: Geometry::Planes,
         }
     }
@@ -103,7 +117,8 @@ pub struct Rendering {
 }
 
 /// Shares of the energy of camera rays that were not followed to their ends. A share of `x` changes
-/// the radiance at a wavelength by at most x times the environment's greatest radiance.
+/// the radiance at a wavelength by at most x times the greatest radiance of the environment and of
+/// all matte bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
     /// Largest share of any sample that meets a body, at any wavelength. It exceeds the energy
@@ -275,10 +290,11 @@ impl<'scene> Job<'scene> {
             let optics = scene.objects.iter().map(|object| optics(object, &wavelength)).collect();
             (wavelength, optics)
         });
+        let mattes = Mattes::new(scene, settings.lit_by_environment.then_some(settings.environment));
         Self {
             view: View::new(&scene.camera, settings.width, settings.height),
             surroundings: Surroundings {
-                bodies: Bodies::new(&scene.objects, settings.geometry),
+                bodies: Bodies::with_mattes(&scene.objects, settings.geometry, mattes),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },
@@ -301,6 +317,11 @@ impl<'scene> Job<'scene> {
         let mut sample = Pixel::default();
         let Some(primary) = self.surroundings.primary(self.view.eye, direction) else { return sample };
         sample.covered = 1;
+        if let Primary::Matte(radiance) = primary {
+            // The same at all wavelengths, whose weights add up to the identity.
+            sample.radiance = radiance;
+            return sample;
+        }
         for (wavelength, optics) in &self.spectrum {
             let outcome = self.surroundings.follow(&primary, optics);
             sample.radiance += wavelength.weights * outcome.radiance;

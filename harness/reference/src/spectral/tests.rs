@@ -1,7 +1,11 @@
 use super::*;
+use glam::{DQuat, Vec3};
 use lapidary_assay::extremum::{larger, largest};
+use lapidary_scene::cuts::{PrismParameters, prism};
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Dispersion, Mineral};
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Averaging, Dispersion, Light, Material, Mesh, Mineral};
+use std::f64::consts::PI;
 use trace::Outcome;
 
 fn ones() -> Environment {
@@ -255,4 +259,174 @@ fn a_body_without_triangles_changes_nothing() {
     assert_eq!(rendered(&scene, &settings).linear, alone.linear);
     scene.objects.truncate(1);
     assert!(rendered(&scene, &settings).linear.iter().all(|pixel| *pixel == [0.0; 4]));
+}
+
+fn matte(mesh: Mesh, base_color: Vec3) -> Object {
+    Object::new("matte", mesh, Material { base_color, ..Material::standard() })
+}
+
+/// Returns a level square plate with its upper side at height `top` and its corners 3 from the
+/// vertical axis.
+fn plate(top: f32) -> Mesh {
+    let square = PrismParameters { sides: 4, radius: 3.0, half_length: 0.05, cap_degrees: 0.0 };
+    let mesh = prism(&square).unwrap().to_mesh(Averaging::Angle);
+    mesh.placed(DQuat::IDENTITY, DVec3::new(0.0, f64::from(top) - 0.05, 0.0))
+}
+
+/// Yields the middle of each cell of a latitude-longitude map with so many rows, row by row from
+/// the zenith, with the cell's solid angle.
+fn cells(rows: u32) -> impl Iterator<Item = (DVec3, f64)> {
+    let step = PI / f64::from(rows);
+    (0..2 * rows * rows).map(move |cell| {
+        let [row, column] = [cell / (2 * rows), cell % (2 * rows)].map(|index| f64::from(index) + 0.5);
+        let (across, along) = (row * step).sin_cos();
+        let (z, x) = (column * step - PI).sin_cos();
+        (DVec3::new(across * x, along, across * z), 2.0 * (0.5 * step).sin() * across * step)
+    })
+}
+
+/// A white matte body in radiance 1 has radiance 1 too, to the accuracy of the harmonics: it is not
+/// seen, neither directly nor through a stone.
+#[test]
+fn white_furnace_with_a_matte_body() {
+    let environment = ones();
+    let mut scene = Scene::named("brilliant").unwrap();
+    let below = scene.bounds().min.y;
+    scene.objects.push(matte(plate(below - 0.1), Vec3::ONE));
+    let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
+    let job = Job::new(&scene, &settings);
+    let mut met = [0, 0];
+    for (x, y) in (0..24 * 24u32).map(|k| (k % 24, k / 24)) {
+        let direction = job.view.direction(f64::from(x) + 0.37, f64::from(y) + 0.61);
+        let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
+        met[usize::from(matches!(primary, Primary::Matte(_)))] += 1;
+        for (_, optics) in &job.spectrum {
+            let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+            assert!(largest((radiance + lost - 1.0).abs().to_array()) <= 5e-5, "{radiance} with {lost} lost");
+        }
+    }
+    assert!(met[0] > 50 && met[1] > 50, "{met:?}");
+
+    let rendering = rendered(&scene, &settings);
+    assert!(rendering.lost.max < settings.energy_bound);
+    let bound = gain(3) * (settings.energy_bound + 5e-5);
+    let near = |pixel: &[f32; 4]| (0..3).all(|k| f64::from(pixel[k] - pixel[3]).abs() <= bound);
+    assert!(rendering.linear.iter().all(near));
+}
+
+/// In radiance 1 a stone shows 1; what leaves it towards a black plate is missing.
+#[test]
+fn a_black_plate_darkens_the_stone_above_it() {
+    let environment = ones();
+    let mut scene = Scene::named("quartz").unwrap();
+    scene.objects[0].material.dispersion = Dispersion::None;
+    let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
+    let alone = rendered(&scene, &settings);
+    // The mean of the pixels that show the stone.
+    let mean = |rendering: &Rendering| {
+        let shown = alone.linear.iter().zip(&rendering.linear).filter(|(alone, _)| alone[3] == 1.0);
+        let values: Vec<f64> = shown.flat_map(|(_, pixel)| &pixel[..3]).map(|value| f64::from(*value)).collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let below = scene.bounds().min.y;
+    let [near, far] = [0.1, 20.0].map(|gap| {
+        let mut scene = scene.clone();
+        scene.objects.push(matte(plate(below - gap), Vec3::ZERO));
+        1.0 - mean(&rendered(&scene, &settings))
+    });
+    println!("a plate takes {near:.4} of the light from nearby, {far:.4} from far away");
+    assert!((1.0 - mean(&alone)).abs() < 1e-3);
+    assert!(near > 0.03 && near > 2.0 * far && far > -1e-3, "{near} {far}");
+}
+
+/// A light and a matte body without triangles leave a picture of a stone as it is.
+#[test]
+fn what_no_ray_meets_changes_nothing() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(12, 12) };
+    let alone = rendered(&scene, &settings);
+    scene.lights.push(Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE });
+    assert_eq!(rendered(&scene, &settings), alone);
+    scene.objects.push(matte(Mesh::default(), Vec3::ONE));
+    assert_eq!(rendered(&scene, &settings).linear, alone.linear);
+}
+
+#[test]
+fn a_matte_body_in_front_hides_the_stone() {
+    let mut scene = Scene::named("brilliant").unwrap();
+    let away = (scene.camera.target - scene.camera.eye).as_dvec3();
+    // Seen under .3 radians from its middle, and the stone under less.
+    let ball = sphere(0.5 * away.length() * f64::sin(0.3), 64);
+    let ball = ball.placed(DQuat::IDENTITY, scene.camera.eye.as_dvec3() + 0.5 * away);
+    let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
+    scene.objects.push(matte(ball, Vec3::new(0.2, 0.5, 0.9)));
+    let both = rendered(&scene, &settings);
+    assert_eq!((both.lost.max, both.lost.mean), (0.0, 0.0));
+    scene.objects.remove(0);
+    let ball = rendered(&scene, &settings);
+    let mut pairs = ball.linear.iter().zip(&both.linear);
+    assert!(pairs.all(|(ball, both)| (0..4).all(|k| (ball[k] - both[k]).abs() <= 1e-6)));
+    assert!(both.linear.iter().filter(|pixel| pixel[3] == 1.0).count() > 300);
+}
+
+/// A stone that lets nothing in reflects the environment, or the matte body in front of it.
+#[test]
+fn the_first_reflection_shows_a_matte_body() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    scene.objects[0].material.base_color = Vec3::ZERO;
+    let environment = ones();
+    let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(8, 8) };
+    let normal = DVec3::ONE.normalize();
+    let seen = |scene: &Scene| {
+        let job = Job::new(scene, &settings);
+        let primary = job.surroundings.primary(2.0 * normal, -normal).expect("met");
+        job.surroundings.follow(&primary, &job.spectrum[1].1).radiance
+    };
+    let index = scene.objects[0].material.index_at(550.0);
+    let reflectance = ((index - 1.0) / (index + 1.0)).powi(2);
+    assert!(seen(&scene).abs_diff_eq(DVec3::splat(reflectance), 1e-3), "{}", seen(&scene));
+    let color = Vec3::new(0.0, 0.5, 1.0);
+    scene.objects.push(matte(sphere(1.0, 32).placed(DQuat::IDENTITY, 4.0 * normal), color));
+    let expected = reflectance * color.as_dvec3();
+    assert!(seen(&scene).abs_diff_eq(expected, 1e-3), "{}, not {expected}", seen(&scene));
+}
+
+/// A ball under a constant and a linear environment and a sun, against a direct sum over the
+/// directions of the light. Its facets are large: the interpolated normal on the way to the middle
+/// is exactly the way's direction, which no facet's normal is.
+#[test]
+fn a_matte_body_sends_what_falls_on_it() {
+    let pixel = |(direction, _): (DVec3, f64)| {
+        let [red, green, blue] = (DVec3::ONE + 0.5 * direction).as_vec3().to_array();
+        [red, green, blue, 1.0]
+    };
+    let linear = EnvironmentMap { width: 128, height: 64, pixels: cells(64).map(pixel).collect() };
+    let base_color = Vec3::new(0.5, 0.25, 1.0);
+    let toward = DVec3::new(2.0, 3.0, -6.0) / 7.0;
+    let sun = Light::Directional { toward: toward.as_vec3(), irradiance: Vec3::new(3.0, 2.0, 1.0) };
+    let mut scene = Scene::named("octahedron").unwrap();
+    scene.objects = vec![matte(sphere(1.0, 16), base_color)];
+    scene.lights.push(sun);
+    let normals = [DVec3::X, DVec3::NEG_Z, toward, DVec3::new(0.48, 0.6, 0.64), DVec3::new(-0.64, -0.6, 0.48)];
+    for environment in [ones(), Environment::Map(linear)] {
+        let settings = Settings { environment: &environment, wavelengths: 3, ..Settings::of_size(8, 8) };
+        let sent = |scene: &Scene, settings: &Settings<'_>, normal: DVec3| {
+            let job = Job::new(scene, settings);
+            let Some(Primary::Matte(radiance)) = job.surroundings.primary(5.0 * normal, -normal) else {
+                panic!("the ball is met")
+            };
+            radiance
+        };
+        for normal in normals {
+            let parts = cells(96).map(|(direction, solid_angle)| {
+                solid_angle * direction.dot(normal).max(0.0) * environment.radiance(direction)
+            });
+            let lit = toward.dot(normal).max(0.0) * DVec3::new(3.0, 2.0, 1.0);
+            let expected = base_color.as_dvec3() / PI * (parts.sum::<DVec3>() + lit);
+            let found = sent(&scene, &settings, normal);
+            assert!(found.abs_diff_eq(expected, 2e-3), "{normal}: {found}, not {expected}");
+            let by_sun = sent(&scene, &Settings { lit_by_environment: false, ..settings }, normal);
+            assert!(by_sun.abs_diff_eq(base_color.as_dvec3() / PI * lit, 2e-6), "{normal}: {by_sun}");
+        }
+    }
 }

@@ -43,12 +43,29 @@ pub(super) struct Outcome {
 }
 
 /// A camera ray up to its first surface, which does not depend on the wavelength.
-pub(super) struct Primary {
+pub(super) enum Primary {
+    /// The ray meets a clear body.
+    Clear(Entry),
+    /// The ray meets a matte body, which sends this radiance.
+    Matte(DVec3),
+}
+
+/// A camera ray at the surface of a clear body.
+pub(super) struct Entry {
     arrival: Arrival,
     /// Direction of the reflection at the surface.
     reflected: DVec3,
-    /// Environment radiance along the reflection; `None` if it meets a body.
+    /// Radiance of the matte body or of the environment that the reflection meets; `None` if it
+    /// meets a clear body.
     reflected_radiance: Option<DVec3>,
+}
+
+/// What a ray outside meets first.
+enum Ahead {
+    /// A clear body.
+    Clear(Hit),
+    /// A matte body or the environment, which sends this radiance.
+    Light(DVec3),
 }
 
 /// A ray that arrives at a surface.
@@ -101,26 +118,43 @@ impl PartialEq for Ray {
 impl Eq for Ray {}
 
 impl Surroundings<'_> {
-    /// Finds the first surface that a camera ray meets; `None` if it meets no body.
+    /// Finds the first surface that a camera ray meets, of whatever body; `None` if it meets none.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         let hit = self.bodies.enter(eye, direction, None)?;
         let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
+        if let Some(radiance) = self.bodies.sent(&hit, arrival.point) {
+            return Some(Primary::Matte(radiance));
+        }
         let reflected = reflect(direction, arrival.normal);
-        let free = self.bodies.enter(arrival.point, reflected, Some(hit.place)).is_none();
-        let reflected_radiance = free.then(|| self.environment.radiance(reflected));
-        Some(Primary { arrival, reflected, reflected_radiance })
+        let reflected_radiance = match self.ahead(arrival.point, reflected, hit.place) {
+            Ahead::Clear(_) => None,
+            Ahead::Light(radiance) => Some(radiance),
+        };
+        Some(Primary::Clear(Entry { arrival, reflected, reflected_radiance }))
+    }
+
+    /// Finds what a ray outside meets that starts from `left`.
+    fn ahead(&self, origin: DVec3, direction: DVec3, left: Place) -> Ahead {
+        let Some(hit) = self.bodies.enter(origin, direction, Some(left)) else {
+            return Ahead::Light(self.environment.radiance(direction));
+        };
+        self.bodies.sent(&hit, origin + hit.distance * direction).map_or(Ahead::Clear(hit), Ahead::Light)
     }
 
     /// Follows `primary` at one wavelength with the bodies' `optics` at that wavelength. The
     /// strongest ray comes first, until all remaining rays together have less energy than the
     /// bound.
     pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
+        let Entry { arrival, reflected, reflected_radiance } = match primary {
+            Primary::Clear(entry) => entry,
+            Primary::Matte(radiance) => return Outcome { radiance: *radiance, lost: 0.0 },
+        };
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
-        let (reflectance, transmitted) = primary.arrival.split(optics);
-        match primary.reflected_radiance {
-            Some(radiance) => outcome.radiance += reflectance * radiance,
-            None => waiting.push(primary.arrival.leave(primary.reflected, false, DVec3::splat(reflectance))),
+        let (reflectance, transmitted) = arrival.split(optics);
+        match reflected_radiance {
+            Some(radiance) => outcome.radiance += reflectance * *radiance,
+            None => waiting.push(arrival.leave(*reflected, false, DVec3::splat(reflectance))),
         }
         waiting.extend(transmitted);
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
@@ -153,8 +187,9 @@ impl Surroundings<'_> {
         outcome
     }
 
-    /// Finds the next surface along the ray. If there is none outside, the environment is added to
-    /// `outcome`; if there is none inside, the surface has a gap and the ray is lost.
+    /// Finds the next surface of a clear body along the ray. If there is none outside, the light of
+    /// the matte body or of the environment ahead is added to `outcome`; if there is none inside,
+    /// the surface has a gap and the ray is lost.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
         if ray.inside {
             let Some(hit) = self.bodies.leave(ray.origin, ray.direction, ray.left) else {
@@ -164,11 +199,13 @@ impl Surroundings<'_> {
             let transmittance = (-hit.distance * optics[ray.left.body].absorption).exp();
             return Some(Arrival::new(ray.origin, ray.direction, hit, true, ray.throughput * transmittance));
         }
-        let hit = self.bodies.enter(ray.origin, ray.direction, Some(ray.left));
-        if hit.is_none() {
-            outcome.radiance += ray.throughput * self.environment.radiance(ray.direction);
+        match self.ahead(ray.origin, ray.direction, ray.left) {
+            Ahead::Clear(hit) => Some(Arrival::new(ray.origin, ray.direction, hit, false, ray.throughput)),
+            Ahead::Light(radiance) => {
+                outcome.radiance += ray.throughput * radiance;
+                None
+            }
         }
-        hit.map(|hit| Arrival::new(ray.origin, ray.direction, hit, false, ray.throughput))
     }
 }
 

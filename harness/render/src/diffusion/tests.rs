@@ -39,7 +39,7 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     let rung = Rung::Diffuse(Reflectance::Blur);
     let settings = Settings { rung, without: Effects::of(&[Effect::Environment]), ..Settings::of_size(8, 8) };
     let mut builder = Builder::new(Some(gpu));
-    let lighting = Lighting::new(&scene, &settings);
+    let lighting = Lighting::new(&scene, &settings, [settings.width, settings.height]);
     let pass = scene_pass(&mut builder, &lighting, &scene, &settings, None).expect("the recipe");
     pass.prepare(&mut builder);
     let Before::Diffusion(diffusion) = &pass.before[0] else { panic!("a diffusion") };

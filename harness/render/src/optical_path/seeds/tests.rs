@@ -109,7 +109,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
         let contents = Contents::Bytes(bytemuck::cast_slice(&texels).to_vec());
         let maps = builder.texture("maps", format, size, contents);
         let maps = Bound::Texture(maps, wgpu::TextureViewDimension::D2Array);
-        let lights = Lighting::new(&scene, &settings).lights(&mut builder);
+        let lights = Lighting::new(&scene, &settings, [1, 1]).lights(&mut builder);
         let lit = Lit { lights, views: view_buffer(&mut builder, &views), maps, size };
         let constants = [("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(dense)))];
         let seeds = Seeds::new(&mut builder, &constants).expect("compiled");

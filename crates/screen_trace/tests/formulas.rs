@@ -1,0 +1,10 @@
+//! `wgsl/screen_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-screen_trace`.
+
+use lapidary_screen_trace::formulas::formulas;
+
+const MODULE: &str = include_str!("../../../wgsl/screen_trace.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/screen_trace.wgsl");
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+}

@@ -1,0 +1,138 @@
+//! What light that leaves a stone meets: the error that each way leaves in stones among other bodies,
+//! and its time.
+
+use super::gem::Errors;
+use super::table::{Table, figure};
+use super::timing::{self, Timed};
+use super::{CostError, Ladder, Options, Progress, Report, Row};
+use glam::Vec3;
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Outside, Rung};
+use lapidary_render as render;
+use lapidary_render::{GemOptions, Picture, SCREEN_STEPS, Settings};
+use lapidary_scene::{Material, Scene};
+
+/// The ladder.
+pub const LADDER: Ladder =
+    Ladder { name: "outside", tables: |report| vec![table(report)], plots: |_| Vec::new(), whole };
+
+/// The scene: stones and matte bodies close to one another.
+const SCENE: &str = "tray";
+/// The camera's angles in degrees: the scene's own, from above, and low from the side.
+const VIEWS: [(f32, f32); 3] = [(60.0, 12.0), (35.0, -25.0), (78.0, 40.0)];
+/// Samples along each side of a pixel of the reference.
+const REFERENCE_SAMPLES: u32 = 4;
+
+/// The ways, each with the steps over the picture.
+const WAYS: [(Outside, u32); 7] = [
+    (Outside::Environment, SCREEN_STEPS),
+    (Outside::Bodies, SCREEN_STEPS),
+    (Outside::Screen, 8),
+    (Outside::Screen, 16),
+    (Outside::Screen, SCREEN_STEPS),
+    (Outside::Screen, 64),
+    (Outside::ScreenAndBodies, SCREEN_STEPS),
+];
+
+/// What is measured: errors over the pixels that show a stone.
+const MEASURES: [&str; 3] = ["flip", "rmse", "energy"];
+
+/// Returns how to measure by default; there are no rungs to choose.
+pub fn options() -> Options {
+    Options { rounds: 7, frame: [512, 384], rungs: Vec::new() }
+}
+
+/// Returns a way's name in the report.
+fn named((outside, steps): (Outside, u32)) -> String {
+    if outside.has_screen() { format!("{outside}, {steps} steps") } else { outside.to_string() }
+}
+
+/// Measures every way in every view, with one sample per pixel.
+///
+/// # Errors
+/// Returns an error if the scene cannot be drawn or if the device fails.
+pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Report, CostError> {
+    let [width, height] = options.frame;
+    let settings = [("width", width), ("height", height), ("rounds", options.rounds)];
+    let mut report = Report::new(LADDER.name, gpu.describe(), &settings.map(|(name, value)| (name, value.into())));
+    let scene = Scene::named(SCENE)?;
+    let usual = Settings { rung: Rung::ByMaterial, samples: 1, ..Settings::of_size(width, height) };
+    for (done, (polar, azimuth)) in (0..).zip(VIEWS) {
+        progress("comparing and timing views", done, VIEWS.len() as u64);
+        let scene = scene.seen_from(polar, azimuth);
+        let view = format!("{polar}°, {azimuth}°");
+        let shows_stone = stones(gpu, &scene, &usual)?;
+        let exact = Settings { rung: Rung::Reference, samples: REFERENCE_SAMPLES, ..usual.clone() };
+        let reference = kept(render::render_means(gpu, &scene, &exact)?, &shows_stone);
+        let settings = |(outside, screen_steps)| {
+            let gem = GemOptions { outside, screen_steps, ..GemOptions::default() };
+            Settings { gem, ..usual.clone() }
+        };
+        let timed: Vec<Timed<'_>> = WAYS.iter().map(|way| Timed::new(&scene, settings(*way))).collect();
+        let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;
+        for (way, timing) in WAYS.into_iter().zip(timings) {
+            let picture = kept(render::render_means(gpu, &scene, &settings(way))?, &shows_stone);
+            let Errors { flip, rmse, energy } = Errors::between(&picture, &reference);
+            let ms = timing.map(|timing| timing.ms);
+            for (measure, value) in MEASURES.into_iter().zip([flip, rmse, energy]) {
+                report.rows.push(Row::new(&named(way), &view, measure, value, "").timed(ms));
+            }
+        }
+    }
+    Ok(report)
+}
+
+/// Returns which pixels show a stone: those that change with its colour, were it matte.
+fn stones(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<bool>, CostError> {
+    let with = |base_color: Vec3| {
+        let mut scene = scene.clone();
+        for object in scene.objects.iter_mut().filter(|object| object.material.is_clear()) {
+            object.material = Material { base_color, ior: 1.0, roughness: 1.0, ..Material::standard() };
+        }
+        render::render(gpu, &scene, settings)
+    };
+    let (black, white) = (with(Vec3::ZERO)?, with(Vec3::ONE)?);
+    Ok(black.linear.iter().zip(&white.linear).map(|(black, white)| black != white).collect())
+}
+
+/// Returns the picture with nothing but some pixels.
+fn kept(mut picture: Picture, is_kept: &[bool]) -> Picture {
+    for (place, _) in is_kept.iter().enumerate().filter(|(_, is_kept)| !**is_kept) {
+        picture.linear[place] = [0.0; 4];
+        picture.encoded[place] = [0, 0, 0, 255];
+    }
+    picture
+}
+
+fn whole(report: &Report) -> Result<(), String> {
+    if report.rungs(MEASURES[0]).len() == WAYS.len() && report.views(MEASURES[0]).len() == VIEWS.len() {
+        return Ok(());
+    }
+    Err("the report does not hold all ways and views".to_owned())
+}
+
+fn table(report: &Report) -> Table {
+    let views = report.views(MEASURES[0]);
+    let mean = |values: Vec<Option<f64>>| {
+        let values: Option<Vec<f64>> = values.into_iter().collect();
+        values.filter(|values| !values.is_empty()).map(|values| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let of = |way: &str, measure: &str| mean(views.iter().map(|view| report.value(way, view, measure)).collect());
+    let ms = |way: &str| mean(views.iter().map(|view| report.ms(way, view, MEASURES[0])).collect());
+    let usual = named(WAYS[0]);
+    Table::of("outside", "What light that leaves a stone meets", report.rungs(MEASURES[0]))
+        .column("meets", |way| (*way).to_owned())
+        .column("FLIP", |way| figure(of(way, "flip"), 3))
+        .column("RMSE", |way| figure(of(way, "rmse"), 3))
+        .column("energy", |way| figure(of(way, "energy"), 3))
+        .column("ms", |way| figure(ms(way), 1))
+        .column("× environment", |way| figure(ms(way).zip(ms(&usual)).map(|(ms, usual)| ms / usual), 2))
+        .note(format!(
+            "The scene `{SCENE}` from {} angles, {} pixels of one sample, stones by `walk-8+tracker`: errors against \
+             the reference over the pixels that show a stone; times of the whole frame, means over the angles. Times: \
+             {}.",
+            VIEWS.len(),
+            report.size(),
+            report.run()
+        ))
+}

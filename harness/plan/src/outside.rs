@@ -1,0 +1,63 @@
+//! What light that leaves a clear stone meets.
+
+use lapidary_scene::nearest::suggest;
+use std::fmt;
+use std::str::FromStr;
+
+/// What light that leaves a clear stone meets before the environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// Nothing: the environment alone.
+    #[default]
+    Environment,
+    /// Other bodies as the picture shows them.
+    Screen,
+    /// The bounds of a few other bodies.
+    Bodies,
+    /// What the picture shows, and where it shows nothing, the bounds.
+    ScreenAndBodies,
+}
+
+impl Outside {
+    /// Every way, from cheap to dear.
+    pub const ALL: [Self; 4] = [Self::Environment, Self::Bodies, Self::Screen, Self::ScreenAndBodies];
+
+    /// Returns the name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Environment => "environment",
+            Self::Screen => "screen",
+            Self::Bodies => "bodies",
+            Self::ScreenAndBodies => "screen+bodies",
+        }
+    }
+
+    /// Whether rays are followed over the picture.
+    #[must_use]
+    pub const fn has_screen(self) -> bool {
+        matches!(self, Self::Screen | Self::ScreenAndBodies)
+    }
+
+    /// Whether rays meet bounds.
+    #[must_use]
+    pub const fn has_bodies(self) -> bool {
+        matches!(self, Self::Bodies | Self::ScreenAndBodies)
+    }
+}
+
+impl fmt::Display for Outside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Outside {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let names = Self::ALL.map(Self::name);
+        let unknown = || format!("expected {}{}", names.join(", "), suggest(text, &names));
+        Self::ALL.into_iter().find(|outside| outside.name() == text).ok_or_else(unknown)
+    }
+}
