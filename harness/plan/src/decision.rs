@@ -254,28 +254,26 @@ impl Case<'_> {
         if !self.request.outside.has_screen() {
             return off("not asked for");
         }
-        if !self.is_gem() {
-            return off(self.not_clear());
-        }
-        let opaque = self.scene.objects.iter().filter(|other| !other.material.is_clear()).count();
-        match opaque {
-            0 => off("all bodies are clear"),
-            1 => on("asked for, 1 other body"),
-            _ => on(format!("asked for, {opaque} other bodies")),
-        }
+        self.meets()
     }
 
     fn bounds_trace(&self) -> Answer {
         if !self.request.outside.has_bodies() {
             return off("not asked for");
         }
+        self.meets()
+    }
+
+    /// Returns whether light that leaves the body may meet another that is not a clear stone.
+    fn meets(&self) -> Answer {
         if !self.is_gem() {
             return off(self.not_clear());
         }
-        match self.scene.objects.len() {
-            0 | 1 => off("the only body"),
-            2 => on("asked for, 1 other body"),
-            all => on(format!("asked for, {} other bodies", all - 1)),
+        let is_met = |other: &&Object| !other.material.is_clear() && !other.mesh.indices.is_empty();
+        match self.scene.objects.iter().filter(is_met).count() {
+            0 => off("all bodies are clear"),
+            1 => on("asked for, and there is 1 other body"),
+            count => on(format!("asked for, and there are {count} other bodies")),
         }
     }
 

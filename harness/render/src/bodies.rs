@@ -14,11 +14,15 @@ const HARMONICS: usize = 9;
 /// Share of its box that a body must fill to count as a box: between an ellipsoid's, π/6, and 1.
 const BOX: f64 = 0.5 * (1.0 + PI / 6.0);
 
-/// Returns the structs `Body` of the recipes: of all bodies, or of the largest.
+/// Returns the structs `Body` of the recipes: of all bodies but clear stones, or of the largest.
+///
+/// Of a stone, bounds and a mean colour say too little: with them, rays that meet another stone come out
+/// worse than with the environment behind it (docs/gem.md).
 pub(super) fn records(scene: &Scene, environment: &Environment) -> Vec<Record> {
     let around = harmonics::project(environment);
     let bounds = |object: &Object| Bounds::of(object.mesh.positions.iter().copied());
-    let shown = scene.objects.iter().filter(|object| !object.mesh.indices.is_empty());
+    let is_met = |object: &&Object| !object.material.is_clear() && !object.mesh.indices.is_empty();
+    let shown = scene.objects.iter().filter(is_met);
     let mut bodies: Vec<(&Object, Bounds)> = shown.map(|object| (object, bounds(object))).collect();
     let size = |bounds: &Bounds| (bounds.max - bounds.min).length_squared();
     bodies.sort_by(|(_, one), (_, other)| size(other).total_cmp(&size(one)));
@@ -37,15 +41,12 @@ fn record(object: &Object, bounds: Bounds, scene: &Scene, around: &[DVec3; harmo
         row.w = -centre[axis] * scale[axis];
         row
     });
-    let is_stone = object.material.is_clear();
-    // A ray that leaves a stone must start inside the stone's own bounds, which an ellipsoid does not
-    // promise.
     let volume = 8.0 * half.as_dvec3().element_product();
-    let is_ball = !is_stone && object.mesh.volume_and_area().0 < BOX * volume;
-    let radiance = if is_stone { clear(object, around) } else { matte(object, centre.as_dvec3(), scene, around) };
+    let is_ball = object.mesh.volume_and_area().0 < BOX * volume;
+    let radiance = matte(object, centre.as_dvec3(), scene, around);
     let radiance: Vec<Vec4> = radiance.iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();
     let record = Record::new("Body").with("bounds_from_world", rows).with("radiance", &radiance[..]);
-    record.with("shape", u32::from(is_ball)).with("look", u32::from(is_stone))
+    record.with("shape", u32::from(is_ball))
 }
 
 /// Returns the harmonics of what a matte body sends, by its normal: the environment and the lights,
@@ -61,12 +62,4 @@ fn matte(object: &Object, centre: DVec3, scene: &Scene, around: &[DVec3; harmoni
     let albedo = object.material.base_color.as_dvec3() / PI;
     let weights: Vec<f64> = harmonics::weights().collect();
     std::array::from_fn(|place| weights[place] * albedo * arriving[place])
-}
-
-/// Returns the harmonics of what a stone sends, by the direction of the ray that meets it: the mean of
-/// the environment in its colour. A stone scatters the directions of light, and keeps its energy.
-fn clear(object: &Object, around: &[DVec3; harmonics::COUNT]) -> [DVec3; HARMONICS] {
-    let mut sent = [DVec3::ZERO; HARMONICS];
-    sent[0] = object.material.base_color.as_dvec3() * around[0];
-    sent
 }

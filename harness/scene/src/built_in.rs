@@ -26,7 +26,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 30] = [
+pub const BUILT_IN: [BuiltIn; 31] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -88,6 +88,11 @@ pub const BUILT_IN: [BuiltIn; 30] = [
         description: "A diamond that leans on its pavilion and an emerald on its table, on a red tray between a blue ball and a \
             yellow block, all matte. Half of what leaves the stones meets the tray, the things on it or the other stone: \
             the scene to judge `--outside` by.",
+    },
+    BuiltIn {
+        name: "solitaire",
+        description: "A diamond in four prongs on a band, matte as painted, over a dark plate. Bounds say little of a band: \
+            what leaves the stone downwards starts inside the band's box.",
     },
     BuiltIn {
         name: "bunny_stone",
@@ -211,6 +216,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "chandelier" => Ok(scene(name, prisms::chandelier()?, materials::flint_glass(), (105.0, 9.0))),
         "pave_ring" => pave::ring(name),
         "tray" => tray::tray(name),
+        "solitaire" => tray::solitaire(name),
         "bunny_stone" => bunny_stone(name),
         "brilliant_fan" => diamond(name, Averaging::default(), Triangulation::Fan),
         "brilliant_strip" => diamond(name, Averaging::default(), Triangulation::Strip),

@@ -2,30 +2,27 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the modules bounds_trace and environment.
 //
-// A recipe adds: the modules bounds_trace and environment. A ray that leaves a body starts inside
-// that body's own bounds, and so does not meet them.
+// A recipe adds: the modules bounds_trace and environment. A ray that starts inside bounds does not
+// meet them.
 
 // Rays that leave meet the bounds of other bodies. Called for by the user.
 override EFFECT_BOUNDS_TRACE: bool = false;
 
 //+bounds_trace {
 const BODIES_NONE: u32 = 0xffffffffu;
-// Values of Body.shape and Body.look.
+// Value of Body.shape for an ellipsoid.
 const BODIES_BALL: u32 = 1u;
-const BODIES_BY_DIRECTION: u32 = 1u;
 
 // A body by its bounds and by what it sends.
 struct Body {
     // Rows of the matrix from world space to the space in which the bounds are the cube from -1 to
     // 1, or the unit ball.
     bounds_from_world: mat3x4f,
-    // Spherical harmonics of degrees 0 to 2 of its radiance, linear RGB: of a matte body by the
-    // surface's normal, of a stone by the direction of the ray that meets it.
+    // Spherical harmonics of degrees 0 to 2 of what it sends by the normal of its surface: radiance,
+    // linear RGB.
     radiance: array<vec4f, 9>,
     // 0 a box, 1 an ellipsoid.
     shape: u32,
-    // 0 by normal, 1 by direction.
-    look: u32,
 }
 
 @group(0) @binding(7) var<storage, read> bodies: array<Body>;
@@ -60,15 +57,11 @@ fn bodies_hit(position: vec3f, direction: vec3f) -> BodiesHit {
 fn bodies_radiance(hit: BodiesHit, position: vec3f, direction: vec3f) -> vec3f {
     let to_bounds = bodies[hit.number].bounds_from_world;
     let point = vec4f(position + hit.distance * direction, 1.0f) * to_bounds;
-    var about = direction;
-    if (bodies[hit.number].look != BODIES_BY_DIRECTION) {
-        var normal = point;
-        if (bodies[hit.number].shape != BODIES_BALL) {
-            normal = bounds_trace_cuboid_normal(point);
-        }
-        about = normalize((to_bounds * normal).xyz);
+    var normal = point;
+    if (bodies[hit.number].shape != BODIES_BALL) {
+        normal = bounds_trace_cuboid_normal(point);
     }
-    let basis = environment_harmonics(about);
+    let basis = environment_harmonics(normalize((to_bounds * normal).xyz));
     let radiance = basis.zeroth * bodies[hit.number].radiance[0]
         + basis.first[0] * bodies[hit.number].radiance[1]
         + basis.first[1] * bodies[hit.number].radiance[2]

@@ -16,9 +16,10 @@ use lapidary_scene::{Material, Scene};
 pub const LADDER: Ladder =
     Ladder { name: "outside", tables: |report| vec![table(report)], plots: |_| Vec::new(), whole };
 
-/// The scene: stones and matte bodies close to one another.
-const SCENE: &str = "tray";
-/// The camera's angles in degrees: the scene's own, from above, and low from the side.
+/// Scenes of stones and matte bodies close to one another: bodies that fill their bounds, and a band
+/// that does not.
+const SCENES: [&str; 2] = ["tray", "solitaire"];
+/// The camera's angles in degrees: aslant, from above, and low from the side.
 const VIEWS: [(f32, f32); 3] = [(60.0, 12.0), (35.0, -25.0), (78.0, 40.0)];
 /// Samples along each side of a pixel of the reference.
 const REFERENCE_SAMPLES: u32 = 4;
@@ -55,12 +56,13 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     let [width, height] = options.frame;
     let settings = [("width", width), ("height", height), ("rounds", options.rounds)];
     let mut report = Report::new(LADDER.name, gpu.describe(), &settings.map(|(name, value)| (name, value.into())));
-    let scene = Scene::named(SCENE)?;
     let usual = Settings { rung: Rung::ByMaterial, samples: 1, ..Settings::of_size(width, height) };
-    for (done, (polar, azimuth)) in (0..).zip(VIEWS) {
-        progress("comparing and timing views", done, VIEWS.len() as u64);
-        let scene = scene.seen_from(polar, azimuth);
-        let view = format!("{polar}°, {azimuth}°");
+    let views = SCENES.into_iter().flat_map(|name| VIEWS.map(|from| (name, from)));
+    let total = (SCENES.len() * VIEWS.len()) as u64;
+    for (done, (name, (polar, azimuth))) in (0..).zip(views) {
+        progress("comparing and timing views", done, total);
+        let scene = Scene::named(name)?.seen_from(polar, azimuth);
+        let view = format!("{name}, {polar}°, {azimuth}°");
         let shows_stone = stones(gpu, &scene, &usual)?;
         let exact = Settings { rung: Rung::Reference, samples: REFERENCE_SAMPLES, ..usual.clone() };
         let reference = kept(render::render_means(gpu, &scene, &exact)?, &shows_stone);
@@ -105,34 +107,42 @@ fn kept(mut picture: Picture, is_kept: &[bool]) -> Picture {
 }
 
 fn whole(report: &Report) -> Result<(), String> {
-    if report.rungs(MEASURES[0]).len() == WAYS.len() && report.views(MEASURES[0]).len() == VIEWS.len() {
+    if report.rungs(MEASURES[0]).len() == WAYS.len() && report.views(MEASURES[0]).len() == SCENES.len() * VIEWS.len() {
         return Ok(());
     }
     Err("the report does not hold all ways and views".to_owned())
 }
 
 fn table(report: &Report) -> Table {
-    let views = report.views(MEASURES[0]);
     let mean = |values: Vec<Option<f64>>| {
         let values: Option<Vec<f64>> = values.into_iter().collect();
         values.filter(|values| !values.is_empty()).map(|values| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let of = |way: &str, measure: &str| mean(views.iter().map(|view| report.value(way, view, measure)).collect());
-    let ms = |way: &str| mean(views.iter().map(|view| report.ms(way, view, MEASURES[0])).collect());
+    let views = |scene: &str| -> Vec<&str> {
+        report.views(MEASURES[0]).into_iter().filter(|view| view.split(',').next() == Some(scene)).collect()
+    };
+    let of = |way: &str, scene: &str, measure: &str| {
+        mean(views(scene).iter().map(|view| report.value(way, view, measure)).collect())
+    };
+    let ms = |way: &str, scene: &str| mean(views(scene).iter().map(|view| report.ms(way, view, MEASURES[0])).collect());
     let usual = named(WAYS[0]);
-    Table::of("outside", "What light that leaves a stone meets", report.rungs(MEASURES[0]))
-        .column("meets", |way| (*way).to_owned())
-        .column("FLIP", |way| figure(of(way, "flip"), 3))
-        .column("RMSE", |way| figure(of(way, "rmse"), 3))
-        .column("energy", |way| figure(of(way, "energy"), 3))
-        .column("ms", |way| figure(ms(way), 1))
-        .column("× environment", |way| figure(ms(way).zip(ms(&usual)).map(|(ms, usual)| ms / usual), 2))
-        .note(format!(
-            "The scene `{SCENE}` from {} angles, {} pixels of one sample, stones by `walk-8+tracker`: errors against \
-             the reference over the pixels that show a stone; times of the whole frame, means over the angles. Times: \
-             {}.",
-            VIEWS.len(),
-            report.size(),
-            report.run()
-        ))
+    let mut lines = Table::of("outside", "What light that leaves a stone meets", report.rungs(MEASURES[0]))
+        .column("meets", |way| (*way).to_owned());
+    for scene in SCENES {
+        lines = lines
+            .column(format!("{scene}: FLIP, RMSE, energy"), |way| {
+                MEASURES.map(|measure| figure(of(way, scene, measure), 3)).join(", ")
+            })
+            .column("ms", |way| figure(ms(way, scene), 1))
+            .column("× environment", |way| {
+                figure(ms(way, scene).zip(ms(&usual, scene)).map(|(ms, usual)| ms / usual), 2)
+            });
+    }
+    lines.note(format!(
+        "Each scene from {} angles, {} pixels of one sample, stones by `walk-8+tracker`: errors against the reference \
+         over the pixels that show a stone; times of the whole frame; means over the angles. Times: {}.",
+        VIEWS.len(),
+        report.size(),
+        report.run()
+    ))
 }

@@ -1,11 +1,12 @@
-//! Stones among matte things, all near enough to one another that what leaves a stone meets them.
+//! Stones among matte things, all near enough to one another that what leaves a stone meets them: on a
+//! tray, and in a ring.
 
 use glam::{DMat4, DQuat, DVec3, Vec3};
 
 use super::{direction, framed, materials};
 use crate::cuts::{BrilliantParameters, StepCutParameters, round_brilliant, step_cut};
 use crate::polyhedron::Polyhedron;
-use crate::surfaces::{rounded_box, sphere};
+use crate::surfaces::{rounded_box, sphere, torus};
 use crate::{Averaging, Bounds, Material, Mesh, Object, Scene, SceneError};
 
 /// Half sizes of the tray, whose top is at height 0; and its edges' radius.
@@ -39,6 +40,43 @@ pub(super) fn tray(name: &str) -> Result<Scene, SceneError> {
         ),
     ];
     Ok(framed(name, objects, direction(60.0, 12.0)))
+}
+
+/// Radius of the solitaire's band and of its round cross-section, and height of the stone's culet
+/// above the band.
+const BAND: f64 = 1.25;
+const WIRE: f64 = 0.16;
+const LIFT: f64 = 0.06;
+/// Half sizes of a prong, and its distance from the pavilion that it runs along.
+const PRONG: DVec3 = DVec3::new(0.06, 0.63, 0.06);
+const PRONGS: f64 = 0.11;
+
+/// Builds a stone on a band, with four prongs, on a plate.
+pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
+    let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
+    let upright = DQuat::from_rotation_x(90f64.to_radians());
+    let mut ring = torus(BAND, WIRE, 96, 24).placed(upright, (BAND + WIRE) * DVec3::Y);
+    let top = 2.0 * (BAND + WIRE) + LIFT;
+    for quarter in 0..4 {
+        // From the culet outwards and up, below the pavilion.
+        let turn = DQuat::from_rotation_y((45.0 + 90.0 * f64::from(quarter)).to_radians())
+            * DQuat::from_rotation_z((PAVILION - 90.0).to_radians());
+        let middle = turn * DVec3::new(PRONGS, PRONG.y, 0.0) + top * DVec3::Y;
+        ring.append(&rounded_box(PRONG, EDGE, 3).placed(turn, middle));
+    }
+    let plate = rounded_box(DVec3::new(2.0, 0.08, 1.4), EDGE, 4).placed(DQuat::IDENTITY, -0.08 * DVec3::Y);
+    let stone = brilliant.to_mesh(Averaging::default());
+    let lowest = Bounds::of(stone.positions.iter().copied()).min.y;
+    let objects = vec![
+        Object::new("plate", plate, matte([0.10, 0.13, 0.20])),
+        Object::new("ring", ring, matte([0.80, 0.52, 0.20])),
+        Object::new(
+            "diamond",
+            stone.placed(DQuat::IDENTITY, (top - f64::from(lowest)) * DVec3::Y),
+            materials::diamond(),
+        ),
+    ];
+    Ok(framed(name, objects, direction(58.0, 24.0)))
 }
 
 /// A material that reflects by Lambert's law alone.
