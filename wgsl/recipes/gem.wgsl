@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, bounds_trace, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
-// parts: mesh, mesh_normals, surroundings, screen, bodies, gem_shading, gem_apart
+// parts: mesh, mesh_normals, surroundings, bodies, gem_shading, screen, gem_apart
 // compares: closest_point
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh is read from storage buffers, so

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
 // requires: absorption, bounds_trace, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
-// parts: mesh, surroundings, screen, bodies, gem_shading, gem_apart
+// parts: mesh, surroundings, bodies, gem_shading, screen, gem_apart
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes. Each draw takes one stone,
 // which must be convex.

@@ -5,7 +5,7 @@ use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
 use super::numbers::{short, triple};
 use super::quality::Chosen;
-use crate::{Geometry, Request, Rung, Spectrum};
+use crate::{Geometry, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene};
@@ -251,29 +251,31 @@ impl Case<'_> {
     }
 
     fn screen_trace(&self) -> Answer {
-        if !self.request.outside.has_screen() {
-            return off("not asked for");
+        match self.request.outside {
+            Some(Outside::Screen) => self.meets("asked for, "),
+            _ => off("not asked for"),
         }
-        self.meets()
     }
 
     fn bounds_trace(&self) -> Answer {
-        if !self.request.outside.has_bodies() {
-            return off("not asked for");
+        match self.request.outside {
+            Some(Outside::Bodies) => self.meets("asked for, "),
+            Some(asked) => off(format!("light that leaves meets the {asked}, as asked for")),
+            None if self.request.quality == Quality::Fast => off("quality fast"),
+            None => self.meets(""),
         }
-        self.meets()
     }
 
     /// Returns whether light that leaves the body may meet another that is not a clear stone.
-    fn meets(&self) -> Answer {
+    fn meets(&self, called: &str) -> Answer {
         if !self.is_gem() {
             return off(self.not_clear());
         }
         let is_met = |other: &&Object| !other.material.is_clear() && !other.mesh.indices.is_empty();
         match self.scene.objects.iter().filter(is_met).count() {
             0 => off("all bodies are clear"),
-            1 => on("asked for, and there is 1 other body"),
-            count => on(format!("asked for, and there are {count} other bodies")),
+            1 => on(format!("{called}beside 1 body that is not clear")),
+            count => on(format!("{called}beside {count} bodies that are not clear")),
         }
     }
 

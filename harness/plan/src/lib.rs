@@ -57,8 +57,8 @@ pub struct Request<'a> {
     pub shadows: bool,
     /// Whether facets' edges inside clear stones are smoothed from one sample per pixel.
     pub footprint: bool,
-    /// What light that leaves a clear stone meets.
-    pub outside: Outside,
+    /// What light that leaves a clear stone meets; `None` lets the quality decide.
+    pub outside: Option<Outside>,
     /// The light around the scene.
     pub environment: &'a Environment,
     /// Factor applied to radiance before the tone curve.
@@ -77,7 +77,7 @@ impl Request<'_> {
             scattering: None,
             shadows: false,
             footprint: false,
-            outside: Outside::Environment,
+            outside: None,
             environment: &Environment::Studio,
             exposure: 1.0,
         }

@@ -5,22 +5,19 @@ use std::fmt;
 use std::str::FromStr;
 
 /// What light that leaves a clear stone meets before the environment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// Nothing: the environment alone.
-    #[default]
     Environment,
     /// Other bodies as the picture shows them.
     Screen,
     /// The bounds of a few other bodies.
     Bodies,
-    /// What the picture shows, and where it shows nothing, the bounds.
-    ScreenAndBodies,
 }
 
 impl Outside {
     /// Every way, from cheap to dear.
-    pub const ALL: [Self; 4] = [Self::Environment, Self::Bodies, Self::Screen, Self::ScreenAndBodies];
+    pub const ALL: [Self; 3] = [Self::Environment, Self::Bodies, Self::Screen];
 
     /// Returns the name on the command line.
     #[must_use]
@@ -29,20 +26,7 @@ impl Outside {
             Self::Environment => "environment",
             Self::Screen => "screen",
             Self::Bodies => "bodies",
-            Self::ScreenAndBodies => "screen+bodies",
         }
-    }
-
-    /// Whether rays are followed over the picture.
-    #[must_use]
-    pub const fn has_screen(self) -> bool {
-        matches!(self, Self::Screen | Self::ScreenAndBodies)
-    }
-
-    /// Whether rays meet bounds.
-    #[must_use]
-    pub const fn has_bodies(self) -> bool {
-        matches!(self, Self::Bodies | Self::ScreenAndBodies)
     }
 }
 

@@ -94,7 +94,7 @@ pub(super) fn apart<'a>(scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene>
 }
 
 /// Creates the passes that draw the scene's objects, each by its rung; `source` replaces the text
-/// of the recipe if all objects share one.
+/// of the settings' rung's recipe, or of all.
 pub(super) fn scene_pass(
     builder: &mut Builder<'_>,
     lighting: &Lighting<'_>,
@@ -108,7 +108,8 @@ pub(super) fn scene_pass(
     let is_smoothed = |part: &Part<'_>| part.objects.iter().any(|drawn| drawn.decisions.has(Effect::Footprint));
     for part in &parts {
         let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));
-        let source = &*source.map_or_else(composed, Cow::Borrowed);
+        let is_named = settings.rung == Rung::ByMaterial || part.rung.recipe() == settings.rung.recipe();
+        let source = &*source.filter(|_| is_named).map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];
         all.append(match part.rung {

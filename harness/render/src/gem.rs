@@ -3,7 +3,7 @@
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
 use super::variant::Part;
-use super::{RenderError, Settings, restraint, stone};
+use super::{RenderError, Settings, restraint, screen, stone};
 use crate::frame::{Builder, PipelineSource};
 use lapidary_plan::{Decisions, Geometry, Rung, Spectrum};
 
@@ -56,7 +56,7 @@ pub(super) fn pass(
         pass.variants.push(Variant {
             shared: lighting.shared(builder, pipeline)?,
             targets: formats.len(),
-            reads_screen: builder.binds(pipeline, 0, 5),
+            reads_screen: builder.binds(pipeline, 0, screen::RADIANCE),
             pipeline,
             bodies,
         });

@@ -44,7 +44,7 @@ impl Layers {
         let radiance = self.footprint.as_ref().map_or(self.samples, |footprint| footprint.radiance);
         let screen = self.screen.map(|(picture, thickness)| {
             let view = screen::view(builder, clip_from_world, size, thickness);
-            (picture, [(4, Bound::from(view))])
+            (picture, [(screen::VIEW, Bound::from(view))])
         });
         let view = (clip_from_world, eye, screen.as_ref().map_or(&[][..], |(_, bound)| &bound[..]));
         // What is drawn over a smoothed stone would keep its shares.

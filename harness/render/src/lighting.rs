@@ -1,8 +1,9 @@
 //! Light on a scene: its lights and the environment, as the recipes bind them. Each is added to the
 //! frame when the first pipeline reads it, and only once.
 
+use super::bodies::{self, Body};
 use super::screen::{self, Picture};
-use super::{RenderError, Settings, bodies, environment};
+use super::{RenderError, Settings, environment};
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::record::Record;
 use glam::{Vec3, Vec4};
@@ -49,7 +50,7 @@ impl<'a> Lighting<'a> {
     /// Returns the bounds of the scene's bodies.
     fn bodies(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.bodies.get_or_init(|| {
-            let records = bodies::records(self.scene, &self.settings.environment);
+            let records = bodies::all(self.scene, &self.settings.environment).iter().map(Body::record).collect();
             builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
         })
     }
@@ -83,8 +84,8 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 7 of group 0, but 4, the view of
-    /// the screen.
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3 and 7 to 9 of group 0; 4 and 5
+    /// are shadow maps, 6 is the view of the screen.
     pub(super) fn shared(
         &self,
         builder: &mut Builder<'_>,
@@ -100,12 +101,12 @@ impl<'a> Lighting<'a> {
         if builder.binds(pipeline, 0, 3) {
             shared.push((3, self.harmonics(builder).into()));
         }
-        if builder.binds(pipeline, 0, 5) {
+        if builder.binds(pipeline, 0, screen::RADIANCE) {
             let picture = self.screen(builder)?;
-            shared.extend([(5, picture.radiance.into()), (6, picture.depth.into())]);
+            shared.extend([(screen::RADIANCE, picture.radiance.into()), (screen::DEPTH, picture.depth.into())]);
         }
-        if builder.binds(pipeline, 0, 7) {
-            shared.push((7, self.bodies(builder).into()));
+        if builder.binds(pipeline, 0, bodies::BINDING) {
+            shared.push((bodies::BINDING, self.bodies(builder).into()));
         }
         Ok(shared)
     }

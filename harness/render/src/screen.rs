@@ -7,6 +7,11 @@ use crate::record::Record;
 use glam::{Mat4, UVec2};
 use lapidary_scene::{Bounds, Scene};
 
+/// Bindings of the part `screen` in group 0.
+pub(super) const VIEW: u32 = 6;
+pub(super) const RADIANCE: u32 = 7;
+pub(super) const DEPTH: u32 = 8;
+
 /// Recipe that draws the picture into the stones' target.
 const COPY: &str = "screen_copy";
 

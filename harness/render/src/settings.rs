@@ -73,8 +73,8 @@ pub struct GemOptions {
     /// Whether each sample takes shares of its neighbours where an edge of a facet, seen through
     /// others, crosses it; not together with `deferred`.
     pub footprint: bool,
-    /// What light that leaves a stone meets before the environment.
-    pub outside: Outside,
+    /// What light that leaves a stone meets before the environment; `None` lets the quality decide.
+    pub outside: Option<Outside>,
     /// How far bodies of the picture reach behind their front, in units of length, above 0; `None`
     /// derives it from the bodies.
     pub thickness: Option<f32>,
@@ -83,7 +83,7 @@ pub struct GemOptions {
 }
 
 /// Default number of steps of a ray over the picture.
-pub const SCREEN_STEPS: u32 = 32;
+pub const SCREEN_STEPS: u32 = 8;
 
 impl Default for GemOptions {
     fn default() -> Self {
@@ -96,7 +96,7 @@ impl Default for GemOptions {
             limit_throughput: None,
             deferred: false,
             footprint: false,
-            outside: Outside::Environment,
+            outside: None,
             thickness: None,
             screen_steps: SCREEN_STEPS,
         }

@@ -25,7 +25,7 @@ struct Body {
     shape: u32,
 }
 
-@group(0) @binding(7) var<storage, read> bodies: array<Body>;
+@group(0) @binding(9) var<storage, read> bodies: array<Body>;
 
 // The body that a ray meets first.
 struct BodiesHit {

@@ -8,7 +8,7 @@
 // Rays that leave meet the bodies that the picture shows. Called for by the user.
 override EFFECT_SCREEN_TRACE: bool = false;
 // Steps of a ray over the picture, all equally long on the screen.
-override SCREEN_STEPS: u32 = 32u;
+override SCREEN_STEPS: u32 = 8u;
 
 //+screen_trace {
 struct ScreenView {
@@ -21,10 +21,10 @@ struct ScreenView {
     thickness: f32,
 }
 
-@group(0) @binding(4) var<uniform> screen: ScreenView;
+@group(0) @binding(6) var<uniform> screen: ScreenView;
 // Linear radiance; alpha is 0 where no body is seen.
-@group(0) @binding(5) var screen_radiance: texture_2d<f32>;
-@group(0) @binding(6) var screen_depth: texture_depth_2d;
+@group(0) @binding(7) var screen_radiance: texture_2d<f32>;
+@group(0) @binding(8) var screen_depth: texture_depth_2d;
 
 // The texel that shows a point in clip coordinates.
 fn screen_texel(clip: vec4f) -> vec2u {

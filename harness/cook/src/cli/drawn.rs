@@ -59,8 +59,9 @@ struct Gem {
     /// pass; for the rungs walk-HITS, except with separate wavelengths.
     #[arg(long, conflicts_with = "deferred")]
     footprint: bool,
-    /// What light that leaves a stone meets: the environment alone (the default), the bounds of a few
-    /// other bodies, other bodies as the picture shows them (screen), or screen+bodies.
+    /// What light that leaves a stone meets: the environment alone, the bounds of a few other bodies, or
+    /// other bodies as the picture shows them (screen). Bodies by default, environment with --quality
+    /// fast.
     #[arg(long, value_name = "WHAT")]
     outside: Option<Outside>,
     /// How far bodies of the picture reach behind their front, for --outside screen, in units of length.
@@ -137,7 +138,7 @@ impl Gem {
             limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
             deferred: self.deferred,
             footprint: self.footprint,
-            outside: self.outside.unwrap_or_default(),
+            outside: self.outside,
             thickness: self.thickness,
             ..usual
         }

@@ -173,6 +173,7 @@ fn the_pages_show_the_record() {
         ("cdrf", &["cdrf.md", "cdrf_ladder.md", "cdrf_shading.md"]),
         ("optical_path", &["optical_path_ladder.md"]),
         ("effects", &["plan.md"]),
+        ("outside", &["gem.md"]),
         ("restraint", &["gem.md", "optical_path.md", "plan.md"]),
         ("sphere", &["cdrf.md"]),
     ];

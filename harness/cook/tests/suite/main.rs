@@ -47,6 +47,7 @@ mod slack;
 mod snapshots;
 mod specialise;
 mod structure;
+mod surroundings;
 mod technique;
 mod text;
 mod texture_diffusion;

@@ -4,14 +4,16 @@
 mod compare;
 
 use compare::Parity;
-use glam::{EulerRot, Quat, Vec3};
+use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 use lapidary_assay::extremum::largest;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::{GemOptions, Settings};
+use lapidary_scene::cuts::octahedron;
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Copies, Environment, Material, Object, Place, Scene};
+use lapidary_scene::polyhedron::{Plane, Polyhedron};
+use lapidary_scene::{Averaging, Camera, Copies, Environment, Material, Object, Place, Scene};
 
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;
@@ -179,6 +181,46 @@ fn so_it_is_with_copies() {
     check("brilliant", "copied, limited", &parity(&copied("brilliant"), &limited, None));
     let limited = Settings { samples: 1, ..with("walk-16", |gem| gem.limit_throughput = Some(true)) };
     check("brilliant", "copied, by throughput", &parity(&copied("brilliant"), &limited, None));
+}
+
+/// Returns a scene with matte bodies around its stone that the camera does not see: a plate and a
+/// ball behind it.
+fn among(mut scene: Scene) -> Scene {
+    let Camera { eye, target, .. } = scene.camera;
+    let (away, size) = ((eye - target).as_dvec3(), scene.bounds().radius());
+    let matte = |base_color| Material { base_color, ior: 1.0, roughness: 1.0, ..Material::standard() };
+    let beside = away.normalize().any_orthonormal_vector();
+    // Convex, since the rung is named for all of them.
+    let block = |half: DVec3| {
+        let side = |normal: DVec3| Plane::through(normal * half, normal);
+        let sides = DVec3::AXES.into_iter().flat_map(|axis| [side(axis), side(-axis)]);
+        Polyhedron::from_planes(&sides.collect::<Vec<_>>()).expect("a block").to_mesh(Averaging::default())
+    };
+    let plate = block(DVec3::new(0.8, 0.5, 0.1) * f64::from(size));
+    let plate = plate.placed(DQuat::IDENTITY, eye.as_dvec3() + away.normalize());
+    let ball = octahedron().expect("an octahedron").to_mesh(Averaging::default()).scaled(size);
+    let ball = ball.placed(DQuat::IDENTITY, eye.as_dvec3() + 0.5 * away + 2.0 * f64::from(size) * beside);
+    scene.objects.push(Object::new("plate", plate, matte(Vec3::new(0.8, 0.3, 0.1))));
+    scene.objects.push(Object::new("ball", ball, matte(Vec3::new(0.1, 0.3, 0.9))));
+    scene
+}
+
+#[test]
+fn so_it_is_among_other_bodies() {
+    for (scene, rung) in [
+        ("brilliant", "surface"),
+        ("brilliant", "proxy-2+tracker"),
+        ("brilliant", "walk-8+tracker"),
+        ("brilliant", "walk-4+split"),
+        ("brilliant", "convex-4+3"),
+        ("sapphire", "bvh-4+paper"),
+    ] {
+        let settings = Settings { samples: 1, ..of_rung(rung) };
+        let one = Scene::named(scene).expect("built in");
+        check(scene, &format!("among, {rung}"), &parity(&among(one), &settings, None));
+    }
+    let settings = Settings { samples: 1, ..of_rung("walk-8+tracker") };
+    check("brilliant", "copied, among", &parity(&among(copied("brilliant")), &settings, None));
 }
 
 /// Fault planted in a recipe's text.

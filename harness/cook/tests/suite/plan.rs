@@ -2,7 +2,7 @@
 
 use crate::gpu;
 use glam::Vec3;
-use lapidary_plan::{Effect, Effects, Quality, Technique};
+use lapidary_plan::{Effect, Effects, Outside, Quality, Technique};
 use lapidary_render as render;
 use lapidary_render::frame::Executor;
 use lapidary_render::plan::{Listing, Plan, Resource};
@@ -182,6 +182,20 @@ fn cases() -> Vec<Case> {
             Settings { gem: GemOptions { footprint: true, ..GemOptions::default() }, ..of_rung("walk-2") },
             [vec!["radiance", "neighbours", "resolve's view"], vec!["gem_resolve", "gem_walk"], vec!["gem_resolve"]],
         ),
+        case(
+            Effect::ScreenTrace,
+            named("tray"),
+            Settings {
+                gem: GemOptions { outside: Some(Outside::Screen), ..GemOptions::default() },
+                ..of_rung("by-material")
+            },
+            [
+                vec!["screen's radiance", "screen's depth", "screen's view", "copy's view"],
+                vec!["screen_copy"],
+                vec!["screen_copy", "stones"],
+            ],
+        ),
+        case(Effect::BoundsTrace, named("tray"), of_rung("by-material"), [vec!["bodies"], vec![], vec![]]),
         case(
             Effect::Cdrf,
             one("wax"),
@@ -377,7 +391,9 @@ fn what_is_off_says_why() {
 type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
 
 fn parts(scene: &Scene) -> Parts {
-    let listing = planned(scene, &settings());
+    // What leaves a stone meets no other body: with others beside it, a stone takes more.
+    let apart = GemOptions { outside: Some(Outside::Environment), ..GemOptions::default() };
+    let listing = planned(scene, &Settings { gem: apart, ..settings() });
     // Pipelines are numbered in the order of their creation, so they are compared by contents.
     let key = |name: &str| {
         let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == name);

@@ -13,6 +13,7 @@ pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
 use crate as render;
+use crate::bodies::{self, Body};
 use crate::{GemMaterial, GemWavelength, Settings};
 use geometry::{Entry, Hit};
 use glam::{Mat3, UVec2, Vec3, Vec4Swizzles as _};
@@ -22,7 +23,7 @@ use lapidary_environment as environment;
 use lapidary_fresnel as fresnel;
 use lapidary_plan::{Effect, Rung, Spectrum};
 use lapidary_refraction as refraction;
-use lapidary_scene::{Environment, Material};
+use lapidary_scene::{Environment, Material, Scene};
 
 /// The discrete part of what happened to a ray at one facet: which facet, and which channels left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +32,8 @@ pub struct Event {
     pub facet: Option<u64>,
     /// One bit per channel, set if it is totally reflected.
     pub total: u8,
+    /// Body whose bounds are met by what leaves; `None` if it meets none.
+    pub met: Option<usize>,
 }
 
 /// A pixel's radiance and the events of its rays, wavelength by wavelength.
@@ -68,6 +71,8 @@ impl GemCopy {
 pub struct Shading<'a> {
     material: GemMaterial,
     copy: Option<GemCopy>,
+    /// Bodies that light meets outside; none if the effect is off.
+    bodies: Vec<Body>,
     wavelengths: Vec<GemWavelength>,
     settings: &'a Settings,
     absorbs: bool,
@@ -91,8 +96,11 @@ impl Ray {
         Self { position, direction, travelled: 0.0, throughput, radiance, followed: true, events: Vec::new() }
     }
 
-    fn end(&mut self, outside: Vec3) {
+    fn end(&mut self, outside: Vec3, met: Option<usize>) {
         self.radiance += self.throughput * outside;
+        if met.is_some() {
+            self.events.push(Event { facet: None, total: 0, met });
+        }
     }
 }
 
@@ -116,6 +124,7 @@ impl<'a> Shading<'a> {
         Self {
             material: GemMaterial::of(material, settings.rung, settings),
             copy: None,
+            bodies: Vec::new(),
             wavelengths: render::wavelengths(material, settings.rung.spectrum()),
             settings,
             absorbs: !settings.without.has(Effect::Absorption) && material.absorbs(),
@@ -127,6 +136,17 @@ impl<'a> Shading<'a> {
     pub fn of_copy(material: &Material, place: &lapidary_scene::Place, settings: &'a Settings) -> Self {
         let shading = Self::new(&place.material(material), settings);
         Self { copy: Some(GemCopy::of(place, &shading.material)), ..shading }
+    }
+
+    /// Returns the shading of a stone whose light meets the bounds of the other bodies of `scene`.
+    #[must_use]
+    pub fn among(self, scene: &Scene) -> Self {
+        Self { bodies: bodies::all(scene, &self.settings.environment), ..self }
+    }
+
+    fn world_position(&self, position: Vec3) -> Vec3 {
+        let of = |copy: &GemCopy| copy.scale * (copy.rotation.transpose() * position) + copy.translation;
+        self.copy.as_ref().map_or(position, of)
     }
 
     fn world_direction(&self, direction: Vec3) -> Vec3 {
@@ -158,6 +178,29 @@ impl<'a> Shading<'a> {
         mix(lower, upper, texels.weight.y)
     }
 
+    /// Returns the body that a ray meets first, and the distance.
+    fn hit_body(&self, position: Vec3, direction: Vec3) -> Option<(usize, f32)> {
+        bodies::hit(&self.bodies, self.world_position(position), self.world_direction(direction))
+    }
+
+    fn met(&self, position: Vec3, direction: Vec3) -> Option<usize> {
+        self.hit_body(position, direction).map(|(body, _)| body)
+    }
+
+    /// `gem_meeting` of the recipe, for bounds: the radiance of the body that a ray meets.
+    fn meeting(&self, position: Vec3, direction: Vec3) -> Option<Vec3> {
+        let (body, distance) = self.hit_body(position, direction)?;
+        Some(self.bodies[body].sends(self.world_position(position) + distance * self.world_direction(direction)))
+    }
+
+    fn arriving(&self, meeting: Option<Vec3>, direction: Vec3) -> Vec3 {
+        meeting.unwrap_or_else(|| self.environment(direction))
+    }
+
+    fn surroundings(&self, position: Vec3, direction: Vec3) -> Vec3 {
+        self.arriving(self.meeting(position, direction), direction)
+    }
+
     fn transmittance(&self, distance: f32) -> Vec3 {
         if !self.absorbs {
             return Vec3::ONE;
@@ -181,7 +224,7 @@ impl<'a> Shading<'a> {
         if ray.followed {
             ray.throughput *= self.transmittance(hit.distance);
         } else {
-            ray.events.push(Event { facet: None, total: 0 });
+            ray.events.push(Event { facet: None, total: 0, met: None });
         }
         ray.followed
     }
@@ -215,20 +258,24 @@ impl<'a> Shading<'a> {
                 break;
             }
             let exit = exit(ray.direction, hit.normal, index);
-            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            let met = self.met(hit.point, exit.direction);
+            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0), met });
             if exit.share > 0.0 {
-                self.leave(&mut ray, Vec3::splat(exit.share), self.environment(exit.direction));
+                self.leave(&mut ray, Vec3::splat(exit.share), self.surroundings(hit.point, exit.direction));
             }
             self.reflect(&mut ray, &hit);
         }
         if self.settings.gem.rest_from_environment {
-            ray.end(self.environment(ray.direction));
+            let met = self.met(ray.position, ray.direction);
+            ray.end(self.surroundings(ray.position, ray.direction), met);
         }
         ray
     }
 
-    fn environment_channels(&self, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
-        Vec3::new(self.environment(red).x, self.environment(green).y, self.environment(blue).z)
+    fn surroundings_channels(&self, position: Vec3, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
+        let meeting = self.meeting(position, green);
+        let [red, green, blue] = [red, green, blue].map(|direction| self.arriving(meeting, direction));
+        Vec3::new(red.x, green.y, blue.z)
     }
 
     fn trace_tracked(&self, entry: &Entry<'_>, direction: Vec3) -> Ray {
@@ -250,29 +297,31 @@ impl<'a> Shading<'a> {
             let green = exit(dispersion::direction(ray.direction, gradient, offsets.y), hit.normal, indices.y);
             let blue = exit(dispersion::direction(ray.direction, gradient, offsets.z), hit.normal, indices.z);
             let share = Vec3::new(red.share, green.share, blue.share);
-            ray.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8 });
+            let met = self.met(hit.point, green.direction);
+            ray.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8, met });
             if share.cmpgt(Vec3::ZERO).any() {
-                self.leave(&mut ray, share, self.environment_channels(red.direction, green.direction, blue.direction));
+                let outside = self.surroundings_channels(hit.point, red.direction, green.direction, blue.direction);
+                self.leave(&mut ray, share, outside);
             }
             self.reflect(&mut ray, &hit);
             gradient = dispersion::reflect(gradient, hit.normal);
         }
         if self.settings.gem.rest_from_environment {
-            ray.end(self.environment_channels(
-                dispersion::direction(ray.direction, gradient, offsets.x),
-                dispersion::direction(ray.direction, gradient, offsets.y),
-                dispersion::direction(ray.direction, gradient, offsets.z),
-            ));
+            let [red, green, blue] =
+                offsets.to_array().map(|offset| dispersion::direction(ray.direction, gradient, offset));
+            let met = self.met(ray.position, green);
+            ray.end(self.surroundings_channels(ray.position, red, green, blue), met);
         }
         ray
     }
 
-    fn environment_red_green(&self, red: Vec3, green: Vec3) -> Vec3 {
-        Vec3::new(self.environment(red).x, self.environment(green).y, 0.0)
+    fn surroundings_red_green(&self, position: Vec3, red: Vec3, green: Vec3) -> Vec3 {
+        let meeting = self.meeting(position, green);
+        Vec3::new(self.arriving(meeting, red).x, self.arriving(meeting, green).y, 0.0)
     }
 
-    fn environment_blue(&self, blue: Vec3) -> Vec3 {
-        Vec3::new(0.0, 0.0, self.environment(blue).z)
+    fn surroundings_blue(&self, position: Vec3, blue: Vec3) -> Vec3 {
+        Vec3::new(0.0, 0.0, self.surroundings(position, blue).z)
     }
 
     /// Returns green's ray, which carries red as well, and blue's.
@@ -296,9 +345,9 @@ impl<'a> Shading<'a> {
                 let red = exit(dispersion::direction(ray.direction, gradient, offset), hit.normal, indices.x);
                 let green = exit(ray.direction, hit.normal, indices.y);
                 let total = u8::from(red.share == 0.0) | u8::from(green.share == 0.0) << 1;
-                ray.events.push(Event { facet: hit.facet, total });
+                ray.events.push(Event { facet: hit.facet, total, met: self.met(hit.point, green.direction) });
                 if red.share > 0.0 || green.share > 0.0 {
-                    let outside = self.environment_red_green(red.direction, green.direction);
+                    let outside = self.surroundings_red_green(hit.point, red.direction, green.direction);
                     self.leave(&mut ray, Vec3::new(red.share, green.share, 0.0), outside);
                 }
                 self.reflect(&mut ray, &hit);
@@ -306,25 +355,29 @@ impl<'a> Shading<'a> {
             }
             if self.arrive(&mut blue, &hit_blue) {
                 let exit = exit(blue.direction, hit_blue.normal, indices.z);
-                blue.events.push(Event { facet: hit_blue.facet, total: u8::from(exit.share == 0.0) });
+                let met = self.met(hit_blue.point, exit.direction);
+                blue.events.push(Event { facet: hit_blue.facet, total: u8::from(exit.share == 0.0), met });
                 if exit.share > 0.0 {
-                    self.leave(&mut blue, Vec3::new(0.0, 0.0, exit.share), self.environment_blue(exit.direction));
+                    let outside = self.surroundings_blue(hit_blue.point, exit.direction);
+                    self.leave(&mut blue, Vec3::new(0.0, 0.0, exit.share), outside);
                 }
                 self.reflect(&mut blue, &hit_blue);
             }
         }
         if self.settings.gem.rest_from_environment {
             let red = dispersion::direction(ray.direction, gradient, offset);
-            ray.end(self.environment_red_green(red, ray.direction));
-            blue.end(self.environment_blue(blue.direction));
+            let met = [&ray, &blue].map(|ray| self.met(ray.position, ray.direction));
+            ray.end(self.surroundings_red_green(ray.position, red, ray.direction), met[0]);
+            blue.end(self.surroundings_blue(blue.position, blue.direction), met[1]);
         }
         [ray, blue]
     }
 
-    fn environment_paper(&self, red: Vec3, spread: Vec3, travelled_inside: f32) -> Vec3 {
+    fn surroundings_paper(&self, position: Vec3, red: Vec3, spread: Vec3, travelled_inside: f32) -> Vec3 {
         let travelled = self.world_length(travelled_inside);
         let strength = self.material.dispersion_strength;
-        self.environment_channels(
+        self.surroundings_channels(
+            position,
             red,
             dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_GREEN, strength),
             dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_BLUE, strength),
@@ -346,17 +399,19 @@ impl<'a> Shading<'a> {
                 break;
             }
             let exit = exit(ray.direction, hit.normal, index);
-            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            let met = self.met(hit.point, exit.direction);
+            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0), met });
             if exit.share > 0.0 {
                 let leaving = dispersion::paper_refract(ray.direction, spread, hit.normal, 1.0 / index, epsilon);
-                let outside = self.environment_paper(exit.direction, leaving, ray.travelled);
+                let outside = self.surroundings_paper(hit.point, exit.direction, leaving, ray.travelled);
                 self.leave(&mut ray, Vec3::splat(exit.share), outside);
             }
             spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
             self.reflect(&mut ray, &hit);
         }
         if self.settings.gem.rest_from_environment {
-            ray.end(self.environment_paper(ray.direction, spread, ray.travelled));
+            let met = self.met(ray.position, ray.direction);
+            ray.end(self.surroundings_paper(ray.position, ray.direction, spread, ray.travelled), met);
         }
         ray
     }
@@ -373,8 +428,10 @@ impl<'a> Shading<'a> {
         let transmits = self.settings.rung != Rung::Surface;
         let direction = (entry.position - eye).normalize();
         let cosine = (-entry.face_normal.dot(direction)).clamp(0.0, 1.0);
-        let reflected = self.environment(refraction::reflect(direction, entry.face_normal));
+        let reflected = self.surroundings(entry.position, refraction::reflect(direction, entry.face_normal));
         let mut rays = Vec::new();
+        let met = self.met(entry.position, refraction::reflect(direction, entry.face_normal));
+        rays.extend(met.map(|_| vec![Event { facet: None, total: 0, met }]));
         if let Spectrum::Separate(_) = self.settings.rung.spectrum() {
             let (mut surface, mut inside) = (Vec3::ZERO, Vec3::ZERO);
             for &GemWavelength { weights, index } in &self.wavelengths {

@@ -6,7 +6,7 @@ use lapidary_assay::extremum::larger;
 use lapidary_plan::Spectrum;
 use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 use lapidary_render::{Picture, RenderError, Settings};
-use lapidary_scene::{Place, Scene};
+use lapidary_scene::{Bounds, Place, Scene};
 
 /// Largest distance in pixels between a pixel's centre and the point that a rasteriser samples.
 /// Vulkan devices snap vertices to a grid: of 1/256 pixel on lavapipe and every desktop GPU (at
@@ -78,18 +78,20 @@ pub fn compare(
     seed: u64,
 ) -> Result<Parity, RenderError> {
     let viewer = Viewer::new(scene, settings.width, settings.height);
-    let [object] = &scene.objects[..] else { return Ok(Parity::default()) };
+    // Other bodies are met by what leaves the stone, but not seen.
+    let Some(object) = scene.objects.first() else { return Ok(Parity::default()) };
     // A copy is shaded in its own space.
     let place = object.copies.as_ref().map_or(Place::IDENTITY, |copies| copies.places[0]);
     let shading = match object.copies {
         Some(_) => Shading::of_copy(&object.material, &place, settings),
         None => Shading::new(&object.material, settings),
     };
+    let shading = if scene.objects.len() > 1 { shading.among(scene) } else { shading };
     let (to_world, to_stone) = (place.transform(), place.transform().inverse());
     let moved_by = |transform: DMat4, point: Vec3| transform.transform_point3(point.as_dvec3()).as_vec3();
     let stone = Stone::new(object, settings)?;
     let eye = scene.camera.eye;
-    let bounds = scene.bounds();
+    let bounds = Bounds::of(object.mesh.positions.iter().copied());
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
     let drift = DRIFT * size / place.scale * ((1 + settings.rung.hits()) as f32).sqrt();
     let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).count();
