@@ -6,14 +6,14 @@ mod compare;
 use compare::Parity;
 use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 use lapidary_assay::extremum::largest;
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effect, Effects, Outside};
 use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::cuts::octahedron;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};
-use lapidary_scene::{Averaging, Camera, Copies, Environment, Material, Object, Place, Scene};
+use lapidary_scene::{Averaging, Camera, Copies, Environment, Material, Mesh, Object, Place, Scene};
 
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;
@@ -183,23 +183,21 @@ fn so_it_is_with_copies() {
     check("brilliant", "copied, by throughput", &parity(&copied("brilliant"), &limited, None));
 }
 
-/// Returns a scene with matte bodies around its stone that the camera does not see: a plate and a
-/// ball behind it.
+/// Returns a scene with matte bodies beside its stone, beyond the edges of the picture. They are no
+/// nearer to the camera than need be: the near plane before them takes digits of the stone's depth.
 fn among(mut scene: Scene) -> Scene {
     let Camera { eye, target, .. } = scene.camera;
-    let (away, size) = ((eye - target).as_dvec3(), scene.bounds().radius());
+    let (away, size) = ((eye - target).as_dvec3(), f64::from(scene.bounds().radius()));
     let matte = |base_color| Material { base_color, ior: 1.0, roughness: 1.0, ..Material::standard() };
-    let beside = away.normalize().any_orthonormal_vector();
+    let (right, up) = away.normalize().any_orthonormal_pair();
     // Convex, since the rung is named for all of them.
-    let block = |half: DVec3| {
-        let side = |normal: DVec3| Plane::through(normal * half, normal);
-        let sides = DVec3::AXES.into_iter().flat_map(|axis| [side(axis), side(-axis)]);
-        Polyhedron::from_planes(&sides.collect::<Vec<_>>()).expect("a block").to_mesh(Averaging::default())
-    };
-    let plate = block(DVec3::new(0.8, 0.5, 0.1) * f64::from(size));
-    let plate = plate.placed(DQuat::IDENTITY, eye.as_dvec3() + away.normalize());
-    let ball = octahedron().expect("an octahedron").to_mesh(Averaging::default()).scaled(size);
-    let ball = ball.placed(DQuat::IDENTITY, eye.as_dvec3() + 0.5 * away + 2.0 * f64::from(size) * beside);
+    let side = |normal: DVec3| Plane::through(normal * DVec3::new(0.8, 0.5, 0.9) * size, normal);
+    let sides: Vec<Plane> = DVec3::AXES.into_iter().flat_map(|axis| [side(axis), side(-axis)]).collect();
+    let plate = Polyhedron::from_planes(&sides).expect("a plate").to_mesh(Averaging::default());
+    let ball = octahedron().expect("an octahedron").to_mesh(Averaging::default()).scaled(0.9 * size as f32);
+    let place = |mesh: Mesh, place: DVec3| mesh.placed(DQuat::IDENTITY, target.as_dvec3() + place);
+    let plate = place(plate, 2.6 * size * right);
+    let ball = place(ball, -2.6 * size * (right - 0.3 * up));
     scene.objects.push(Object::new("plate", plate, matte(Vec3::new(0.8, 0.3, 0.1))));
     scene.objects.push(Object::new("ball", ball, matte(Vec3::new(0.1, 0.3, 0.9))));
     scene
@@ -221,6 +219,15 @@ fn so_it_is_among_other_bodies() {
     }
     let settings = Settings { samples: 1, ..of_rung("walk-8+tracker") };
     check("brilliant", "copied, among", &parity(&among(copied("brilliant")), &settings, None));
+    // Many pixels do show them.
+    let scene = among(Scene::named("brilliant").expect("built in"));
+    let apart =
+        Settings { gem: GemOptions { outside: Some(Outside::Environment), ..settings.gem }, ..settings.clone() };
+    let [met, apart] =
+        [settings, apart].map(|one| render::render(super::gpu(), &scene, &one).expect("rendered").linear);
+    let differ = met.iter().zip(&apart).filter(|(met, apart)| met != apart).count();
+    let covered = met.iter().filter(|pixel| pixel[3] == 1.0).count();
+    assert!(differ > covered / 4, "{differ} of {covered} pixels show another body");
 }
 
 /// Fault planted in a recipe's text.

@@ -37,7 +37,8 @@ impl Viewer {
     /// Returns the direction from the eye through a point of the picture, in pixels from its upper
     /// left corner.
     fn direction(&self, x: f64, y: f64) -> DVec3 {
-        let clip = DVec4::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 0.5, 1.0);
+        // On the far plane: near the eye, the matrix's rounding would turn the direction.
+        let clip = DVec4::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0, 1.0);
         let world = self.world_from_clip * clip;
         (world.truncate() / world.w - self.eye).normalize()
     }
