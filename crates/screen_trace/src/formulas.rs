@@ -262,6 +262,16 @@ fn promises() -> Vec<Promise> {
             };
             (coordinates(draws), coordinates(draws))
         }),
+        holds(
+            "screen_trace_reach",
+            "a start at the edge is in view",
+            |draws| {
+                let w = draws.magnitude(-4, 4);
+                let edge = draws.pick(&[Vec3::new(1.0, 0.0, 0.5), Vec3::new(0.0, -1.0, 0.5), Vec3::ZERO, Vec3::Z]);
+                (w * edge.extend(1.0), w * (Vec3::new(0.0, 0.0, 0.5) - edge).extend(0.0))
+            },
+            |_: (Vec4, Vec4), reach: f32| that(reach > 0.5, || format!("{reach}")),
+        ),
         finite("screen_trace_sides", "finite for heights up to 1e18", |draws| {
             let vector = |draws: &mut Draws<'_>| lapidary_assay::outside::vector_up_to(draws, 59);
             (vector(draws), vector(draws))
@@ -288,6 +298,15 @@ fn promises() -> Vec<Promise> {
                 (1.01 * surface, 0.99 * surface, surface, -0.1 / surface)
             },
             |_: (f32, f32, f32, f32), meets: bool| that(!meets, || "it meets".to_owned()),
+        ),
+        holds(
+            "screen_trace_crossing",
+            "a ray that begins on the surface counts as behind it",
+            |draws| {
+                let before = draws.between(0.5, 2.0);
+                (before, before, draws.between(0.1, 0.4), draws.between(0.5, 2.0))
+            },
+            |_: (f32, f32, f32, f32), fraction: f32| that(fraction == 1.0, || format!("{fraction}")),
         ),
         finite("screen_trace_crossing", "finite for inverses in [0, 1e18]", |draws| {
             let mut any = || if draws.below(6) == 0 { 0.0 } else { draws.magnitude(-126, 58) };

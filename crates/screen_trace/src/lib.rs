@@ -40,7 +40,7 @@ pub fn reach(start: Vec4, step: Vec4) -> f32 {
 
 /// Returns the distances at which a ray meets three sides of the view.
 pub fn sides(height: Vec3, rate: Vec3) -> Vec3 {
-    let distance = (height / rate.max(Vec3::splat(SCREEN_TRACE_PARALLEL))).min(Vec3::splat(SCREEN_TRACE_FAR));
+    let distance = height / rate.max(Vec3::splat(SCREEN_TRACE_PARALLEL));
     Vec3::select(rate.cmpgt(Vec3::splat(SCREEN_TRACE_PARALLEL)), distance, Vec3::splat(SCREEN_TRACE_FAR))
 }
 

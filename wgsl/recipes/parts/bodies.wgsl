@@ -35,7 +35,7 @@ struct BodiesHit {
 }
 
 fn bodies_hit(position: vec3f, direction: vec3f) -> BodiesHit {
-    var nearest = BodiesHit(BODIES_NONE, 3.4028235e38f);
+    var nearest = BodiesHit(BODIES_NONE, 3.4e38f);
     for (var number = 0u; number < arrayLength(&bodies); number++) {
         let to_bounds = bodies[number].bounds_from_world;
         let start = vec4f(position, 1.0f) * to_bounds;

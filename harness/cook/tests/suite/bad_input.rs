@@ -67,9 +67,9 @@ const RENDER: &[Row] = &[
     ("wax --rung surface --out {}/out.png", One, &["rung `surface` is for clear stones", "take another"]),
     ("{}/metal.gltf --rung proxy-1 --out {}/out.png", One, &["rung `proxy-1` is for clear stones", "transmission"]),
     (
-        "{}/metal.gltf --rung reference --size 8x8 --out {}/out.png",
+        "{}/polished.gltf --rung reference --size 8x8 --out {}/out.png",
         One,
-        &["object `mesh 0`", "opaque", "the reference"],
+        &["object `mesh 0`", "opaque and polished", "the reference"],
     ),
     ("octahedron --from 20 --out {}/out.png", Usage, &["--from", "20,11"]),
     ("octahedron --from nan,0 --out {}/out.png", Usage, &["--from", "degrees"]),
@@ -80,7 +80,7 @@ const RENDER: &[Row] = &[
     ("bunny --with cdrf --rung lambert --out {}/out.png", One, &["a rung is asked for"]),
     ("octahedron --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "lit by the environment"]),
     ("bunny --rung godunov-16 --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "a light sees"]),
-    ("skin --rung reference --with shadow --out {}/out.png", One, &["casts shadows anyway"]),
+    ("skin --rung reference --with shadow --out {}/out.png", One, &["has shadows of its own"]),
     ("bunny --with cdrf,optical_path --out {}/out.png", One, &["by one of them"]),
     ("bunny --with fog --out {}/out.png", Usage, &["--with", "shadow"]),
     ("bunny --deferred --out {}/out.png", One, &["nothing there is drawn by the gem recipes"]),
@@ -458,6 +458,10 @@ const BAD_MEMBERS: &[(&str, Change)] = &[
         )
     }),
     ("metal.gltf", |d| extend_wax(d, json!({}))),
+    ("polished.gltf", |d| {
+        extend_wax(d, json!({}));
+        d["materials"][0]["pbrMetallicRoughness"] = json!({"metallicFactor": 0, "roughnessFactor": 0});
+    }),
     ("draco.gltf", |d| {
         d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
         d["meshes"][0]["primitives"][0]["extensions"] =

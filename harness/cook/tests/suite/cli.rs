@@ -50,9 +50,9 @@ fn plan_prints_one_json_document() {
         let of = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
         of.map(|row| text(row, "effect")).collect::<Vec<_>>()
     };
-    assert_eq!(on("diamond"), ["convex_trace", "dispersion"]);
-    assert_eq!(on("ruby"), ["convex_trace", "absorption"]);
-    assert_eq!(on("clear glass"), ["bvh_trace"]);
+    assert_eq!(on("diamond"), ["convex_trace", "dispersion", "bounds_trace"]);
+    assert_eq!(on("ruby"), ["convex_trace", "absorption", "bounds_trace"]);
+    assert_eq!(on("clear glass"), ["bvh_trace", "bounds_trace"]);
     for row in rows("objects") {
         // Slate has one rung and no ladder.
         let measured = text(&row, "material") != "slate";
