@@ -5,7 +5,7 @@ use super::table::{Table, figure};
 use super::timing::{self, Timed};
 use super::{CostError, Ladder, Options, Progress, Report, Row};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects, Rung};
+use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};
 use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
@@ -129,6 +129,23 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 (Effect::Dispersion, Effect::ConvexTrace),
                 (Effect::Footprint, Effect::ConvexTrace),
             ],
+        },
+        Case {
+            name: "tray, bodies",
+            scene: Scene::named("tray")?,
+            settings: settings("by-material"),
+            effects: &[Effect::ConvexTrace, Effect::BoundsTrace, Effect::EnvironmentMap],
+            stands_on: &[(Effect::BoundsTrace, Effect::ConvexTrace)],
+        },
+        Case {
+            name: "tray, screen",
+            scene: Scene::named("tray")?,
+            settings: Settings {
+                gem: GemOptions { outside: Some(Outside::Screen), ..GemOptions::default() },
+                ..settings("by-material")
+            },
+            effects: &[Effect::ConvexTrace, Effect::ScreenTrace, Effect::EnvironmentMap],
+            stands_on: &[(Effect::ScreenTrace, Effect::ConvexTrace)],
         },
         Case {
             name: "ruby, a thin wall",

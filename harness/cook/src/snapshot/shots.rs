@@ -1,7 +1,7 @@
 //! Pictures of a single scene each, and the commands that render them.
 
 use super::folder;
-use lapidary_plan::{Decisions, Effect, Effects, Rung};
+use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, MOST_SAMPLES, Settings};
 use lapidary_scene::{SAMPLES, Scene, SceneError};
 use std::path::PathBuf;
@@ -24,6 +24,8 @@ pub struct Shot {
     pub paper_centre: bool,
     /// Whether facets' edges inside are smoothed.
     pub footprint: bool,
+    /// What light that leaves a stone meets; `None` for the default.
+    pub outside: Option<Outside>,
     /// Whether scattering materials are lit by the scene's lights alone.
     pub lights_alone: bool,
     /// Whether their surface also reflects nothing, as in the reference.
@@ -45,7 +47,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 44] = [
+pub const SHOTS: [Shot; 48] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -131,6 +133,25 @@ pub const SHOTS: [Shot; 44] = [
             shows it.",
         ..shot("footprint_on", "Round brilliant, one sample a pixel, edges smoothed", "brilliant", "walk-8+tracker")
     },
+    Shot {
+        paragraph: "What light that leaves a stone meets: a diamond and an emerald on a tray. Most of their light comes from the tray and from \
+            what stands on it, here by the bounds of each body.",
+        ..shot("tray", "Stones on a tray", "tray", BY_MATERIAL)
+    },
+    Shot {
+        outside: Some(Outside::Environment),
+        paragraph: "The same with the environment alone: through the tray, the stones show the studio's floor.",
+        ..shot("tray_environment", "Stones on a tray, the environment alone", "tray", BY_MATERIAL)
+    },
+    Shot {
+        outside: Some(Outside::Screen),
+        paragraph: "The same by the picture: rays that leave are followed over the colour and depth of the bodies that were drawn before.",
+        ..shot("tray_screen", "Stones on a tray, by the picture", "tray", BY_MATERIAL)
+    },
+    Shot {
+        paragraph: "A stone in its setting. Facets show the prongs and the band, and not only the studio.",
+        ..shot("solitaire", "A diamond on a band", "solitaire", BY_MATERIAL)
+    },
     by_lights("skin", "Skin: spheres of falling radius", "skin", "accurate"),
     Shot {
         paragraph: "The same by Lambert's law: the terminator is as sharp on the smallest sphere as on the largest.",
@@ -176,6 +197,7 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         from: None,
         paper_centre: false,
         footprint: false,
+        outside: None,
         lights_alone: false,
         matte: false,
         exposure: 1.0,
@@ -226,7 +248,12 @@ impl Shot {
         let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
         Settings {
             rung,
-            gem: GemOptions { paper_centre: self.paper_centre, footprint: self.footprint, ..GemOptions::default() },
+            gem: GemOptions {
+                paper_centre: self.paper_centre,
+                footprint: self.footprint,
+                outside: self.outside,
+                ..GemOptions::default()
+            },
             without: self.without(),
             exposure: self.exposure,
             diffuse: DiffuseOptions { curvature: self.curvature, ..DiffuseOptions::default() },
@@ -269,6 +296,7 @@ impl Shot {
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
         let footprint = if self.footprint { " --footprint" } else { "" };
+        let outside = self.outside.map_or(String::new(), |outside| format!(" --outside {outside}"));
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
         let left_out = self.left_out();
         let light = if left_out.is_empty() { String::new() } else { format!(" --without {}", left_out.join(",")) };
@@ -279,7 +307,7 @@ impl Shot {
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
         let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
-        let choices = format!("{from}{rung}{centre}{footprint}{light}{curvature}{exposure}{samples}");
+        let choices = format!("{from}{rung}{centre}{footprint}{outside}{light}{curvature}{exposure}{samples}");
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }
