@@ -82,19 +82,19 @@ fn screen_trace_inverse_w(depth: f32, scale: f32, offset: f32) -> f32 {
     return (depth - scale) / offset;
 }
 
-// Whether a ray meets a surface on a step: whether any part of the step lies as deep as the body
-// whose front the depth buffer shows. Nothing is divided, so that infinity, an inverse of 0, is no
-// case of its own.
+// Whether a ray has met a surface on a step: whether it ends behind the front that the depth buffer
+// shows there, and any part of the step lies before the body's back. Steps may be long: a ray
+// that ends in front of a surface has not met it, however deep it was before. Nothing is divided, so
+// that infinity, an inverse of 0, is no case of its own.
 // Returns: whether it does.
 // Units: `before`, `here` and `surface` are 1 / w of the ray at the step's two ends and of the
-//   surface; `thickness` of the body is in units of w.
+//   surface at its end; `thickness` of the body is in units of w.
 // Domain: inverses 0 or in [1e-6, 1e6], thickness 0 or in [1e-6, 1e6].
 // Outside: with a thickness below 0, a body thinner than its own front, which a ray may miss.
 // Accuracy: lavapipe 3 backward; portable 6 backward
 fn screen_trace_meets(before: f32, here: f32, surface: f32, thickness: f32) -> bool {
     let nearest = max(before, here);
-    let farthest = min(before, here);
-    return farthest <= surface && surface <= nearest * (1.0f + thickness * surface);
+    return here <= surface && surface <= nearest * (1.0f + thickness * surface);
 }
 
 // Where on a step a ray goes through a surface that is flat between the step's two ends.

@@ -222,6 +222,7 @@ fn meets_formula() -> Formula {
     formula(M, "screen_trace_meets", mirror::meets, oracle::meets, step)
         .edge("it goes through", |(before, here, surface, _): Case| before > surface && surface > here)
         .edge("in front", |(before, here, surface, _): Case| before.min(here) > surface)
+        .edge("from behind to the front", |(before, here, surface, _): Case| before < surface && surface < here)
         .edge("behind the body", |case: Case| {
             let (before, here, surface, thickness) = case;
             before.max(here) < surface && !mirror::meets(before, here, surface, thickness)
@@ -233,11 +234,9 @@ fn meets_formula() -> Formula {
         .edge("towards the eye", |(before, here, ..): Case| here > before)
         .edge("a surface at infinity", |(_, _, surface, _): Case| surface == 0.0)
         .edge("a ray to infinity", |(before, here, ..): Case| before.min(here) == 0.0)
-        .pair(
-            "ends exchanged",
-            |(before, here, surface, thickness): Case| (here, before, surface, thickness),
-            |_, one: bool, other: bool| that(one == other, || format!("{one} {other}")),
-        )
+        .invariant("in front at the end, it has met nothing", |(_, here, surface, _): Case, meets: bool| {
+            that(!meets || here <= surface, || "it meets".to_owned())
+        })
         .build()
 }
 

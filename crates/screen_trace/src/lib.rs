@@ -60,11 +60,10 @@ pub fn inverse_w(depth: f32, scale: f32, offset: f32) -> f32 {
     (depth - scale) / offset
 }
 
-/// Returns whether a ray meets a surface on a step.
+/// Returns whether a ray has met a surface on a step.
 pub fn meets(before: f32, here: f32, surface: f32, thickness: f32) -> bool {
     let nearest = before.max(here);
-    let farthest = before.min(here);
-    farthest <= surface && surface <= nearest * (1.0 + thickness * surface)
+    here <= surface && surface <= nearest * (1.0 + thickness * surface)
 }
 
 /// Returns where on a step a ray goes through a surface.

@@ -54,8 +54,7 @@ pub fn inverse_w(depth: f64, scale: f64, offset: f64) -> f64 {
 /// The two ranges of w themselves.
 pub fn meets(before: f64, here: f64, surface: f64, thickness: f64) -> bool {
     let [before, here, front] = [before, here, surface].map(f64::recip);
-    let (nearest, farthest) = (before.min(here), before.max(here));
-    farthest >= front && nearest <= front + thickness
+    here >= front && before.min(here) <= front + thickness
 }
 
 /// A search for the last fraction at which the ray is in front of the surface.

@@ -5,7 +5,7 @@ use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
 use super::numbers::{short, triple};
 use super::quality::Chosen;
-use crate::{Geometry, Outside, Quality, Request, Rung, Spectrum};
+use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene};
@@ -252,29 +252,28 @@ impl Case<'_> {
 
     fn screen_trace(&self) -> Answer {
         match self.request.outside {
-            Some(Outside::Screen) => self.meets("asked for, "),
+            _ if !self.is_gem() => off(self.not_clear()),
+            Some(Outside::Screen) => self.meets("asked for, ", usize::MAX),
             _ => off("not asked for"),
         }
     }
 
     fn bounds_trace(&self) -> Answer {
         match self.request.outside {
-            Some(Outside::Bodies) => self.meets("asked for, "),
-            Some(asked) => off(format!("light that leaves meets the {asked}, as asked for")),
+            _ if !self.is_gem() => off(self.not_clear()),
+            Some(Outside::Bodies) => self.meets("asked for, ", MOST_BODIES),
+            Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),
-            None => self.meets(""),
+            None => self.meets("", MOST_BODIES),
         }
     }
 
-    /// Returns whether light that leaves the body may meet another that is not a clear stone.
-    fn meets(&self, called: &str) -> Answer {
-        if !self.is_gem() {
-            return off(self.not_clear());
-        }
-        let is_met = |other: &&Object| !other.material.is_clear() && !other.mesh.indices.is_empty();
-        match self.scene.objects.iter().filter(is_met).count() {
+    /// Returns whether light that leaves the body may meet others, of which it meets the `most` largest.
+    fn meets(&self, called: &str, most: usize) -> Answer {
+        match self.scene.beside_stones().count() {
             0 => off("all bodies are clear"),
             1 => on(format!("{called}beside 1 body that is not clear")),
+            count if count > most => on(format!("{called}the {most} largest of {count} bodies that are not clear")),
             count => on(format!("{called}beside {count} bodies that are not clear")),
         }
     }

@@ -33,7 +33,7 @@ pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use note::{Note, Objects};
 pub use notes::of as notes;
-pub use outside::Outside;
+pub use outside::{MOST_BODIES, Outside};
 pub use quality::{Quality, Technique};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 

@@ -4,6 +4,10 @@ use lapidary_scene::nearest::suggest;
 use std::fmt;
 use std::str::FromStr;
 
+/// Most bodies whose bounds are met, the largest ones: each ray that leaves a stone is tested against
+/// all of them.
+pub const MOST_BODIES: usize = 16;
+
 /// What light that leaves a clear stone meets before the environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {

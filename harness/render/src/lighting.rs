@@ -50,7 +50,7 @@ impl<'a> Lighting<'a> {
     /// Returns the bounds of the scene's bodies.
     fn bodies(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.bodies.get_or_init(|| {
-            let records = bodies::all(self.scene, &self.settings.environment).iter().map(Body::record).collect();
+            let records = bodies::all(self.scene, self.settings).iter().map(Body::record).collect();
             builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
         })
     }

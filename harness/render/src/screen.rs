@@ -74,8 +74,9 @@ pub(super) fn view(builder: &mut Builder<'_>, clip_from_world: Mat4, size: [u32;
 /// Returns how far bodies reach behind their front: as asked for, or half the mean diagonal of the
 /// opaque bodies' bounds.
 pub(super) fn thickness(scene: &Scene, settings: &Settings) -> f32 {
-    let opaque = || scene.objects.iter().filter(|object| !object.material.is_clear());
     let diagonal = |bounds: Bounds| (bounds.max - bounds.min).length();
-    let sum: f32 = opaque().map(|object| diagonal(Bounds::of(object.mesh.positions.iter().copied()))).sum();
-    settings.gem.thickness.unwrap_or(0.5 * sum / opaque().count().max(1) as f32)
+    let others = scene.beside_stones().map(|object| diagonal(Bounds::of(object.mesh.positions.iter().copied())));
+    let diagonals: Vec<f32> = others.collect();
+    let mean = diagonals.iter().sum::<f32>() / diagonals.len().max(1) as f32;
+    settings.gem.thickness.unwrap_or(0.5 * mean)
 }

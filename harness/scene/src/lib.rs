@@ -183,6 +183,12 @@ impl Scene {
         Self { camera, ..self.clone() }
     }
 
+    /// Returns the bodies that light may meet when it leaves a clear stone: those with triangles that are
+    /// no clear stones themselves.
+    pub fn beside_stones(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter().filter(|object| !object.material.is_clear() && !object.mesh.indices.is_empty())
+    }
+
     /// Returns the number of triangles in all bodies.
     #[must_use]
     pub fn triangle_count(&self) -> usize {

@@ -3,9 +3,9 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts surroundings, screen and bodies, and mesh if it reads one; struct GemVertex, whose members include
-// `position`, `face_normal` and, with instances, `instance`; the entry point gem_vertex; struct
-// GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
+// A geometry recipe adds: the parts surroundings, bodies and screen, and mesh if it reads one; struct
+// GemVertex, whose members include `position`, `face_normal` and, with instances, `instance`; the entry
+// point gem_vertex; struct GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
 // gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
 
 // A wall without an interior: the environment behind it shows undeflected below the reflection.
@@ -186,7 +186,7 @@ fn gem_world_position(position: vec3f) -> vec3f {
 
 // What a ray that leaves the stone meets, before the environment.
 struct GemMeeting {
-    // Distance in world space of a body that the picture shows; below 0 if there is none.
+    // Distance of a body that the picture shows, in lengths of the direction; below 0 if there is none.
     distance: f32,
     // Whether a body's bounds are met, and the radiance that it sends.
     is_bounded: bool,
@@ -263,6 +263,12 @@ fn gem_exit(inside: vec3f, normal: vec3f, index: f32) -> GemExit {
         return GemExit(inside, 0.0f);
     }
     return GemExit(leaving.direction, 1.0f - fresnel_dielectric(-dot(normal, inside), 1.0f / index));
+}
+
+// The direction of a channel that leaves: green's, or red's or blue's where green is totally reflected.
+fn gem_lead(red: GemExit, green: GemExit, blue: GemExit) -> vec3f {
+    let other = select(blue.direction, red.direction, red.share > 0.0f);
+    return select(other, green.direction, green.share > 0.0f);
 }
 
 // Whether a ray ends after it has travelled this distance.
@@ -355,9 +361,10 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     return ray.radiance;
 }
 
-// Radiance that arrives at a position from three directions, one per channel.
-fn gem_surroundings_channels(position: vec3f, red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
-    let meeting = gem_meeting(position, green);
+// Radiance that arrives at a position from three directions, one per channel. `lead` is the one that
+// is followed to other bodies.
+fn gem_surroundings_channels(position: vec3f, lead: vec3f, red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
+    let meeting = gem_meeting(position, lead);
     return vec3f(
         gem_arriving(meeting, position, red).r,
         gem_arriving(meeting, position, green).g,
@@ -365,8 +372,8 @@ fn gem_surroundings_channels(position: vec3f, red: vec3f, green: vec3f, blue: ve
     );
 }
 
-fn gem_surroundings_red_green(position: vec3f, red: vec3f, green: vec3f) -> vec3f {
-    let meeting = gem_meeting(position, green);
+fn gem_surroundings_red_green(position: vec3f, lead: vec3f, red: vec3f, green: vec3f) -> vec3f {
+    let meeting = gem_meeting(position, lead);
     return vec3f(gem_arriving(meeting, position, red).r, gem_arriving(meeting, position, green).g, 0.0f);
 }
 
@@ -394,7 +401,9 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
             let blue = gem_exit(dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b);
             let share = vec3f(red.share, green.share, blue.share);
             if (any(share > vec3f(0.0f))) {
-                gem_leave(&ray, share, gem_surroundings_channels(hit.point, red.direction, green.direction, blue.direction));
+                let lead = gem_lead(red, green, blue);
+                let outside = gem_surroundings_channels(hit.point, lead, red.direction, green.direction, blue.direction);
+                gem_leave(&ray, share, outside);
             }
             gem_reflect(&ray, hit);
             gradient = dispersion_reflect(gradient, hit.normal);
@@ -403,6 +412,7 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     if (REST_FROM_ENVIRONMENT) {
         return gem_end(ray, gem_surroundings_channels(
             ray.position,
+            ray.direction,
             dispersion_direction(ray.direction, gradient, offsets.r),
             dispersion_direction(ray.direction, gradient, offsets.g),
             dispersion_direction(ray.direction, gradient, offsets.b),
@@ -434,7 +444,8 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
             let green = gem_exit(ray.direction, hits.first.normal, indices.g);
             if (red.share > 0.0f || green.share > 0.0f) {
-                let outside = gem_surroundings_red_green(hits.first.point, red.direction, green.direction);
+                let lead = gem_lead(red, green, green);
+                let outside = gem_surroundings_red_green(hits.first.point, lead, red.direction, green.direction);
                 gem_leave(&ray, vec3f(red.share, green.share, 0.0f), outside);
             }
             gem_reflect(&ray, hits.first);
@@ -450,7 +461,7 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
     }
     if (REST_FROM_ENVIRONMENT) {
         let red = dispersion_direction(ray.direction, gradient, offset);
-        let outside = gem_surroundings_red_green(ray.position, red, ray.direction);
+        let outside = gem_surroundings_red_green(ray.position, ray.direction, red, ray.direction);
         return gem_end(ray, outside) + gem_end(blue, gem_surroundings_blue(blue.position, blue.direction));
     }
     return ray.radiance + blue.radiance;
@@ -462,6 +473,7 @@ fn gem_surroundings_paper(position: vec3f, red: vec3f, spread: vec3f, travelled_
     let travelled = gem_world_length(travelled_inside);
     return gem_surroundings_channels(
         position,
+        red,
         red,
         dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_GREEN, material.dispersion_strength),
         dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_BLUE, material.dispersion_strength),

@@ -114,7 +114,10 @@ impl Asked {
         // The reference has no recipes, but can leave out the environment's diffuse light.
         if settings.rung == Rung::Reference {
             if settings.shadows {
-                return Err(Failure(format!("rung `reference` has shadows of its own; leave --with {SHADOW} out")));
+                return Err(Failure(format!(
+                    "rung `reference` knows no --with {SHADOW}: what scatters light has shadows there anyway, and what is matte \
+                     has none; leave it out"
+                )));
             }
             let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
             // A scene's materials decide what it calls for. Evaluated lazily, because deciding

@@ -3,7 +3,7 @@
 
 use super::asked::Asked;
 use super::{Failure, number};
-use lapidary_plan::{Decisions, Geometry, Note, Outside, Rung, Spectrum};
+use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
@@ -223,8 +223,29 @@ impl Drawn {
         ];
         let gem = self.gem.iter().flat_map(Gem::given);
         refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;
+        refuse_meeting_nothing(&scene, &settings)?;
+        if settings.gem.thickness.is_some() && settings.gem.outside != Some(Outside::Screen) {
+            return Err(Failure("--thickness is for --outside screen; add that, or leave --thickness out".to_owned()));
+        }
         Ok((scene, settings, notes))
     }
+}
+
+/// Refuses what is asked of light that leaves stones, if it meets nothing there.
+fn refuse_meeting_nothing(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
+    let (effect, outside) = match settings.gem.outside {
+        Some(outside @ Outside::Screen) => (Effect::ScreenTrace, outside),
+        Some(outside @ Outside::Bodies) => (Effect::BoundsTrace, outside),
+        _ => return Ok(()),
+    };
+    let all = Decisions::all(scene, &settings.request());
+    if settings.without.has(effect) || all.iter().any(|decisions| decisions.has(effect)) {
+        return Ok(());
+    }
+    let called = all.iter().flat_map(|decisions| &decisions.effects).find(|decision| decision.effect == effect);
+    let reason = called.map_or("it has no object", |decision| &decision.reason);
+    let scene = &scene.name;
+    Err(Failure(format!("scene `{scene}`: --outside {outside} has no meaning: {reason}; leave it out")))
 }
 
 /// Refuses options of techniques that draw no object: they would be believed to have been obeyed.

@@ -21,9 +21,9 @@ use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
 use lapidary_environment as environment;
 use lapidary_fresnel as fresnel;
-use lapidary_plan::{Effect, Rung, Spectrum};
+use lapidary_plan::{Decisions, Effect, Rung, Spectrum};
 use lapidary_refraction as refraction;
-use lapidary_scene::{Environment, Material, Scene};
+use lapidary_scene::{Environment, Material, Object, Scene};
 
 /// The discrete part of what happened to a ray at one facet: which facet, and which channels left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +118,12 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
     Exit { direction: leaving.direction, share: 1.0 - fresnel::dielectric(-normal.dot(inside), 1.0 / index) }
 }
 
+/// `gem_lead` of the recipe.
+fn lead(red: &Exit, green: &Exit, blue: &Exit) -> Vec3 {
+    let other = if red.share > 0.0 { red.direction } else { blue.direction };
+    if green.share > 0.0 { green.direction } else { other }
+}
+
 impl<'a> Shading<'a> {
     /// Prepares the shading of `material` under `settings`.
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
@@ -138,10 +144,12 @@ impl<'a> Shading<'a> {
         Self { copy: Some(GemCopy::of(place, &shading.material)), ..shading }
     }
 
-    /// Returns the shading of a stone whose light meets the bounds of the other bodies of `scene`.
+    /// Returns the shading of `object`, whose light meets the bounds of the other bodies of `scene` if the
+    /// settings have it so.
     #[must_use]
-    pub fn among(self, scene: &Scene) -> Self {
-        Self { bodies: bodies::all(scene, &self.settings.environment), ..self }
+    pub fn among(self, object: &Object, scene: &Scene) -> Self {
+        let meets = Decisions::of(object, scene, &self.settings.request()).has(Effect::BoundsTrace);
+        Self { bodies: if meets { bodies::all(scene, self.settings) } else { Vec::new() }, ..self }
     }
 
     fn world_position(&self, position: Vec3) -> Vec3 {
@@ -272,8 +280,8 @@ impl<'a> Shading<'a> {
         ray
     }
 
-    fn surroundings_channels(&self, position: Vec3, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
-        let meeting = self.meeting(position, green);
+    fn surroundings_channels(&self, position: Vec3, lead: Vec3, [red, green, blue]: [Vec3; 3]) -> Vec3 {
+        let meeting = self.meeting(position, lead);
         let [red, green, blue] = [red, green, blue].map(|direction| self.arriving(meeting, direction));
         Vec3::new(red.x, green.y, blue.z)
     }
@@ -297,10 +305,12 @@ impl<'a> Shading<'a> {
             let green = exit(dispersion::direction(ray.direction, gradient, offsets.y), hit.normal, indices.y);
             let blue = exit(dispersion::direction(ray.direction, gradient, offsets.z), hit.normal, indices.z);
             let share = Vec3::new(red.share, green.share, blue.share);
-            let met = self.met(hit.point, green.direction);
+            let lead = lead(&red, &green, &blue);
+            let met = self.met(hit.point, lead);
             ray.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8, met });
             if share.cmpgt(Vec3::ZERO).any() {
-                let outside = self.surroundings_channels(hit.point, red.direction, green.direction, blue.direction);
+                let directions = [red.direction, green.direction, blue.direction];
+                let outside = self.surroundings_channels(hit.point, lead, directions);
                 self.leave(&mut ray, share, outside);
             }
             self.reflect(&mut ray, &hit);
@@ -309,14 +319,14 @@ impl<'a> Shading<'a> {
         if self.settings.gem.rest_from_environment {
             let [red, green, blue] =
                 offsets.to_array().map(|offset| dispersion::direction(ray.direction, gradient, offset));
-            let met = self.met(ray.position, green);
-            ray.end(self.surroundings_channels(ray.position, red, green, blue), met);
+            let met = self.met(ray.position, ray.direction);
+            ray.end(self.surroundings_channels(ray.position, ray.direction, [red, green, blue]), met);
         }
         ray
     }
 
-    fn surroundings_red_green(&self, position: Vec3, red: Vec3, green: Vec3) -> Vec3 {
-        let meeting = self.meeting(position, green);
+    fn surroundings_red_green(&self, position: Vec3, lead: Vec3, [red, green]: [Vec3; 2]) -> Vec3 {
+        let meeting = self.meeting(position, lead);
         Vec3::new(self.arriving(meeting, red).x, self.arriving(meeting, green).y, 0.0)
     }
 
@@ -345,9 +355,10 @@ impl<'a> Shading<'a> {
                 let red = exit(dispersion::direction(ray.direction, gradient, offset), hit.normal, indices.x);
                 let green = exit(ray.direction, hit.normal, indices.y);
                 let total = u8::from(red.share == 0.0) | u8::from(green.share == 0.0) << 1;
-                ray.events.push(Event { facet: hit.facet, total, met: self.met(hit.point, green.direction) });
+                let lead = lead(&red, &green, &green);
+                ray.events.push(Event { facet: hit.facet, total, met: self.met(hit.point, lead) });
                 if red.share > 0.0 || green.share > 0.0 {
-                    let outside = self.surroundings_red_green(hit.point, red.direction, green.direction);
+                    let outside = self.surroundings_red_green(hit.point, lead, [red.direction, green.direction]);
                     self.leave(&mut ray, Vec3::new(red.share, green.share, 0.0), outside);
                 }
                 self.reflect(&mut ray, &hit);
@@ -367,7 +378,7 @@ impl<'a> Shading<'a> {
         if self.settings.gem.rest_from_environment {
             let red = dispersion::direction(ray.direction, gradient, offset);
             let met = [&ray, &blue].map(|ray| self.met(ray.position, ray.direction));
-            ray.end(self.surroundings_red_green(ray.position, red, ray.direction), met[0]);
+            ray.end(self.surroundings_red_green(ray.position, ray.direction, [red, ray.direction]), met[0]);
             blue.end(self.surroundings_blue(blue.position, blue.direction), met[1]);
         }
         [ray, blue]
@@ -379,8 +390,11 @@ impl<'a> Shading<'a> {
         self.surroundings_channels(
             position,
             red,
-            dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_GREEN, strength),
-            dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_BLUE, strength),
+            [
+                red,
+                dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_GREEN, strength),
+                dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_BLUE, strength),
+            ],
         )
     }
 

@@ -86,7 +86,7 @@ pub fn compare(
         Some(_) => Shading::of_copy(&object.material, &place, settings),
         None => Shading::new(&object.material, settings),
     };
-    let shading = if scene.objects.len() > 1 { shading.among(scene) } else { shading };
+    let shading = shading.among(object, scene);
     let (to_world, to_stone) = (place.transform(), place.transform().inverse());
     let moved_by = |transform: DMat4, point: Vec3| transform.transform_point3(point.as_dvec3()).as_vec3();
     let stone = Stone::new(object, settings)?;
