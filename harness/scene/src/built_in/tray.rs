@@ -21,7 +21,7 @@ pub(super) fn tray(name: &str) -> Result<Scene, SceneError> {
     let emerald = step_cut(&StepCutParameters::EMERALD)?;
     let leaning = DQuat::from_rotation_y(0.4) * DQuat::from_rotation_x(PAVILION.to_radians());
     let on_its_table = DQuat::from_rotation_y(-0.5) * DQuat::from_rotation_x(180f64.to_radians());
-    let ball = sphere(0.5, 96).placed(DQuat::IDENTITY, DVec3::new(0.95, 0.5, -0.75));
+    let ball = plain(sphere(0.5, 96)).placed(DQuat::IDENTITY, DVec3::new(0.95, 0.5, -0.75));
     let block = rounded_box(DVec3::new(0.42, 0.6, 0.28), EDGE, 4);
     let block = block.placed(DQuat::from_rotation_y(0.6), DVec3::new(-1.2, 0.6, -0.75));
     let objects = vec![
@@ -55,7 +55,7 @@ const PRONGS: f64 = 0.11;
 pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
     let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
     let upright = DQuat::from_rotation_x(90f64.to_radians());
-    let mut ring = torus(BAND, WIRE, 96, 24).placed(upright, (BAND + WIRE) * DVec3::Y);
+    let mut ring = plain(torus(BAND, WIRE, 96, 24)).placed(upright, (BAND + WIRE) * DVec3::Y);
     let top = 2.0 * (BAND + WIRE) + LIFT;
     for quarter in 0..4 {
         // From the culet outwards and up, below the pavilion.
@@ -77,6 +77,11 @@ pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
         ),
     ];
     Ok(framed(name, objects, direction(58.0, 24.0)))
+}
+
+/// Returns the mesh without texture coordinates: nothing on it is blurred.
+fn plain(mesh: Mesh) -> Mesh {
+    Mesh { uvs: Vec::new(), ..mesh }
 }
 
 /// A material that reflects by Lambert's law alone.
