@@ -53,7 +53,8 @@ pub fn inverse_w(depth: f64, scale: f64, offset: f64) -> f64 {
 
 /// The two ranges of w themselves.
 pub fn meets(before: f64, here: f64, surface: f64, thickness: f64) -> bool {
-    let [before, here, front] = [before, here, surface].map(f64::recip);
+    let [before, here, front] =
+        [before, here, surface].map(|inverse| if inverse > 0.0 { inverse.recip() } else { f64::INFINITY });
     here >= front && before.min(here) <= front + thickness
 }
 
