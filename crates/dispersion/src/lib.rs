@@ -12,6 +12,7 @@
 //! assert!(2.40 < red && red < blue && blue < 2.46);
 //! ```
 
+pub mod channels;
 #[cfg(feature = "formulas")]
 pub mod formulas;
 pub mod oracle;

@@ -523,3 +523,20 @@ fn table_is_current() {
     let page = include_str!("../../../docs/dispersion.md");
     assert!(page.contains(&table), "docs/dispersion.md should hold:\n{table}");
 }
+
+/// The channels' indices rise from red to blue, as the oracles have them, and are one without
+/// dispersion.
+#[test]
+fn channel_indices_are_those_of_the_wavelengths() {
+    let wavelengths = [DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE].map(f64::from);
+    for (name, _, material) in MATERIALS.iter().chain(&FURTHER) {
+        let found = channels::of_sellmeier(*material);
+        let exact = wavelengths.map(|wavelength| oracle::sellmeier(*material, wavelength) as f32);
+        assert_eq!(found.to_array(), exact, "{name}");
+        assert!(1.0 < found.x && found.x < found.y && found.y < found.z, "{name}: {found}");
+    }
+    assert_eq!(channels::of_abbe(1.5, 0.0), Vec3::splat(1.5));
+    let glass = channels::of_abbe(1.5168, 20.0 / 64.17);
+    let exact = channels::of_sellmeier(oracle::DISPERSION_CROWN_GLASS);
+    assert!((glass - exact).abs().max_element() < 2e-4, "{glass} {exact}");
+}

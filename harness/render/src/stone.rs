@@ -8,7 +8,6 @@ use super::{RenderError, Settings, restraint};
 use crate::frame::{Bound, Builder, PipelineId};
 use crate::record::Record;
 use glam::{DMat3, Mat3, Vec3};
-use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Geometry, Rung, Spectrum};
 use lapidary_scene::normals::soft_normals;
@@ -195,7 +194,7 @@ impl GemMaterial {
             absorption: lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance),
             // No ray travels as far as this.
             distance_limit: settings.gem.distance_limit.unwrap_or(f32::MAX),
-            channel_indices: channel_indices(material),
+            channel_indices: material.channel_indices(),
             dispersion_strength: settings.gem.dispersion_strength,
             throughput_limit: restraint::throughput_limit(material, rung, settings),
         }
@@ -208,14 +207,6 @@ impl GemMaterial {
         let record = record.with("dispersion_strength", self.dispersion_strength);
         record.with("throughput_limit", self.throughput_limit)
     }
-}
-
-/// Returns the refractive indices at the wavelengths that represent the three channels.
-pub(crate) fn channel_indices(material: &Material) -> Vec3 {
-    Vec3::from(
-        [DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE]
-            .map(|wavelength| material.index_at(f64::from(wavelength)) as f32),
-    )
 }
 
 /// `GemWavelength` of the recipe.
@@ -240,7 +231,7 @@ pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<GemWav
         }
         Spectrum::Separate(3) => {
             let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(DMat3::from_diagonal);
-            channels.into_iter().zip(channel_indices(material).to_array()).map(|(w, n)| entry(w, n)).collect()
+            channels.into_iter().zip(material.channel_indices().to_array()).map(|(w, n)| entry(w, n)).collect()
         }
         Spectrum::Separate(count) => spectrum::weights(count as usize)
             .iter()

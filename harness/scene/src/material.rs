@@ -2,7 +2,7 @@
 
 use super::{Medium, Solver};
 use glam::Vec3;
-use lapidary_dispersion::oracle as dispersion;
+use lapidary_dispersion::{channels, oracle as dispersion};
 
 /// Optical properties of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -225,6 +225,12 @@ impl Material {
     #[must_use]
     pub fn absorbs(&self) -> bool {
         self.attenuation_color != Vec3::ONE && self.attenuation_distance.is_finite()
+    }
+
+    /// Returns the refractive indices at the wavelengths that represent the three channels.
+    #[must_use]
+    pub fn channel_indices(&self) -> Vec3 {
+        channels::of(|wavelength| self.index_at(wavelength))
     }
 
     /// Returns the refractive index at a wavelength in nanometres.
