@@ -3,7 +3,7 @@
 
 use super::asked::Asked;
 use super::{Failure, number};
-use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Rung, Spectrum};
+use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
@@ -56,7 +56,8 @@ struct Gem {
     #[arg(long)]
     deferred: bool,
     /// Smooth facets' edges inside stones from one sample per pixel, which mixes neighbours in a second
-    /// pass; for the rungs walk-HITS, except with separate wavelengths.
+    /// pass; for the rungs walk-HITS, except with separate wavelengths. With --samples 1, on by default
+    /// unless a rung or --quality fast is asked for; --without footprint leaves it out.
     #[arg(long, conflicts_with = "deferred")]
     footprint: bool,
     /// What light that leaves a stone meets: the environment alone, the bounds of a few other bodies, or
@@ -227,8 +228,21 @@ impl Drawn {
         if settings.gem.thickness.is_some() && settings.gem.outside != Some(Outside::Screen) {
             return Err(Failure("--thickness is for --outside screen; add that, or leave --thickness out".to_owned()));
         }
+        let settings = smoothed_at_one_sample(&scene, settings);
         Ok((scene, settings, notes))
     }
+}
+
+/// Smooths facets' edges where one sample per pixel is all there is, unless a rung is named, or the
+/// quality is fast: docs/gem_ladder.md.
+fn smoothed_at_one_sample(scene: &Scene, settings: Settings) -> Settings {
+    let is_chosen = settings.rung == Rung::ByMaterial && settings.quality != Quality::Fast;
+    if settings.samples > 1 || !is_chosen || settings.gem.deferred {
+        return settings;
+    }
+    let smooth = Settings { gem: GemOptions { footprint: true, ..settings.gem }, ..settings.clone() };
+    let all = Decisions::all(scene, &smooth.request());
+    if all.iter().any(|decisions| decisions.has(Effect::Footprint)) { smooth } else { settings }
 }
 
 /// Refuses what is asked of light that leaves stones, if it meets nothing there.

@@ -433,3 +433,22 @@ fn the_committed_brilliant_is_what_the_command_writes() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/brilliant.glb");
     assert!(std::fs::read(path).expect("the asset") == written, "`./cook scene brilliant --out {path}` remakes it");
 }
+
+/// With one sample per pixel, edges are smoothed unless something else is asked for.
+#[test]
+fn one_sample_is_smoothed_by_default() {
+    let folder = folder();
+    let render = |name: &str, more: &[&str]| {
+        let arguments = ["render", "octahedron", "--size", "48x48", "--samples", "1", "--out", name];
+        succeeds(folder.path(), &[&arguments[..], more].concat());
+        std::fs::read(folder.path().join(name)).expect("written")
+    };
+    let usual = render("usual.exr", &[]);
+    assert!(usual == render("asked.exr", &["--footprint"]));
+    let plain = render("plain.exr", &["--without", "footprint"]);
+    assert!(usual != plain);
+    assert!(plain == render("named.exr", &["--rung", "walk-8+tracker"]));
+    let fast = render("fast.exr", &["--quality", "fast"]);
+    assert!(fast == render("fast_plain.exr", &["--quality", "fast", "--without", "footprint"]));
+    assert!(fast != render("fast_asked.exr", &["--quality", "fast", "--footprint"]));
+}
