@@ -1,5 +1,6 @@
 //! What light that leaves a clear stone meets.
 
+use crate::Effect;
 use lapidary_scene::nearest::suggest;
 use std::fmt;
 use std::str::FromStr;
@@ -22,6 +23,16 @@ pub enum Outside {
 impl Outside {
     /// Every way, from cheap to dear.
     pub const ALL: [Self; 3] = [Self::Environment, Self::Bodies, Self::Screen];
+
+    /// Returns the effect that this way needs; `None` for the environment alone.
+    #[must_use]
+    pub const fn effect(self) -> Option<Effect> {
+        match self {
+            Self::Environment => None,
+            Self::Bodies => Some(Effect::BoundsTrace),
+            Self::Screen => Some(Effect::ScreenTrace),
+        }
+    }
 
     /// Returns the name on the command line.
     #[must_use]

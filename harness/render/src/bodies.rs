@@ -1,11 +1,10 @@
 //! The bodies of a scene by their bounds and by what they send, as the part `bodies` reads them.
 
-use super::Settings;
 use crate::record::Record;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_bounds_trace::{self as bounds_trace, BOUNDS_TRACE_NONE};
 use lapidary_environment as environment;
-use lapidary_plan::{Effect, MOST_BODIES};
+use lapidary_plan::MOST_BODIES;
 use lapidary_scene::mesh_diagnosis::open_edges;
 use lapidary_scene::{Bounds, Object, Scene, harmonics};
 use std::f64::consts::PI;
@@ -31,13 +30,11 @@ pub(crate) struct Body {
     pub(crate) is_ball: bool,
 }
 
-/// Returns all bodies but clear stones, or the largest of them.
+/// Returns all bodies but clear stones, or the largest of them, under an environment of these harmonics.
 ///
 /// Of a stone, bounds and a mean colour say too little: with them, rays that meet another stone come out
 /// worse than with the environment behind it (docs/gem.md).
-pub(crate) fn all(scene: &Scene, settings: &Settings) -> Vec<Body> {
-    let dark = settings.without.has(Effect::Environment);
-    let around = if dark { [DVec3::ZERO; harmonics::COUNT] } else { harmonics::project(&settings.environment) };
+pub(crate) fn all(scene: &Scene, around: &[DVec3; harmonics::COUNT]) -> Vec<Body> {
     let bounds = |object: &Object| Bounds::of(object.mesh.positions.iter().copied());
     let size = |bounds: &Bounds| (bounds.max - bounds.min).length();
     let met = scene.beside_stones().map(|object| (object, bounds(object)));
@@ -45,7 +42,7 @@ pub(crate) fn all(scene: &Scene, settings: &Settings) -> Vec<Body> {
     let mut met: Vec<(&Object, Bounds)> = met.filter(|(_, bounds)| size(bounds) > LEAST).collect();
     met.sort_by(|(_, one), (_, other)| size(other).total_cmp(&size(one)));
     met.truncate(MOST_BODIES);
-    met.into_iter().map(|(object, bounds)| Body::of(object, bounds, scene, &around)).collect()
+    met.into_iter().map(|(object, bounds)| Body::of(object, bounds, scene, around)).collect()
 }
 
 impl Body {
@@ -135,7 +132,9 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lapidary_plan::Effects;
+    use crate::Settings;
+    use crate::lighting::around;
+    use lapidary_plan::{Effect, Effects};
     use lapidary_scene::surfaces::{rounded_box, sphere};
     use lapidary_scene::{Light, Material, Mesh};
 
@@ -146,8 +145,13 @@ mod tests {
         scene
     }
 
+    /// Returns what is met in the studio.
+    fn met(scene: &Scene) -> Vec<Body> {
+        all(scene, &around(&Settings::of_size(8, 8)))
+    }
+
     fn body(mesh: Mesh) -> Body {
-        let mut all = all(&beside(mesh), &Settings::of_size(8, 8));
+        let mut all = met(&beside(mesh));
         assert_eq!(all.len(), 1);
         all.remove(0)
     }
@@ -190,9 +194,9 @@ mod tests {
     #[test]
     fn what_has_no_extent_is_no_body() {
         let point = Mesh::with_shared_normals(vec![Vec3::ONE; 3], vec![0, 1, 2], lapidary_scene::Averaging::default());
-        assert!(all(&beside(point), &Settings::of_size(8, 8)).is_empty());
+        assert!(met(&beside(point)).is_empty());
         let octahedron = Scene::named("octahedron").expect("built in");
-        assert!(all(&octahedron, &Settings::of_size(8, 8)).is_empty());
+        assert!(met(&octahedron).is_empty());
     }
 
     #[test]
@@ -202,7 +206,7 @@ mod tests {
             let ball = sphere(0.1 + 0.1 * number as f64, 8);
             scene.objects.push(Object::new("ball", ball, Material::standard()));
         }
-        let met = all(&scene, &Settings::of_size(8, 8));
+        let met = met(&scene);
         assert_eq!(met.len(), MOST_BODIES);
         // Scales of 1 / 3.2 and so on.
         assert!(met.iter().all(|body| body.bounds_from_world[0].x < 1.0));
@@ -213,7 +217,7 @@ mod tests {
     fn light_arrives_at_the_surface() {
         let dark = Settings { without: Effects::of(&[Effect::Environment]), ..Settings::of_size(8, 8) };
         let ring = lapidary_scene::surfaces::torus(2.0, 0.1, 64, 16);
-        let sent = |scene: &Scene| all(scene, &dark).remove(0).radiance[0];
+        let sent = |scene: &Scene| all(scene, &around(&dark)).remove(0).radiance[0];
         let mut scene = beside(ring);
         assert_eq!(sent(&scene), Vec3::ZERO);
         scene.lights = vec![Light::Point { position: Vec3::ZERO, intensity: Vec3::ONE }];

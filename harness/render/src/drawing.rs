@@ -63,7 +63,7 @@ impl Drawing {
         };
         let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
         let layers = Layers::new(builder, &lighting, settings, display.samples, [columns, rows])?;
-        if lighting.screen_in_use().is_some() && Tile::all(width, height, settings.samples).count() > 1 {
+        if layers.follows_screen() && Tile::all(width, height, settings.samples).count() > 1 {
             return Err(RenderError::ScreenTiles { largest: Tile::side(settings.samples) });
         }
         pass.prepare(builder);

@@ -19,7 +19,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// Creates the targets for `pass`, apart from `samples`.
+    /// Creates the targets, apart from `samples`, once all pipelines are made.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         lighting: &Lighting<'_>,
@@ -31,6 +31,11 @@ impl Layers {
         let [width, height] = size;
         let depth = builder.target("depth", [width, height, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
         Ok(Self { samples, depth, footprint, screen: lighting.screen_in_use() })
+    }
+
+    /// Whether rays are followed over the picture of the other bodies.
+    pub(super) fn follows_screen(&self) -> bool {
+        self.screen.is_some()
     }
 
     /// Draws the bodies as seen from an eye.

@@ -283,10 +283,9 @@ fn follow(
     picture: &mut Picture,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<(), RenderError> {
-    // What is not clear is opaque here, and drawn matte; the same rule as of the effect
-    // `reflection` says whether it also reflects.
+    // What is opaque is drawn matte. The rule of the effect `reflection` says whether it also reflects.
     let reflects = |Material { ior, roughness, .. }: &Material| *ior != 1.0 && *roughness == 0.0;
-    let polished = |object: &&Object| !object.material.is_clear() && reflects(&object.material);
+    let polished = |object: &&Object| object.material.is_opaque() && reflects(&object.material);
     if let Some(opaque) = scene.objects.iter().find(polished) {
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }

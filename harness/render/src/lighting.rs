@@ -6,7 +6,8 @@ use super::screen::{self, Picture};
 use super::{RenderError, Settings, environment};
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::record::Record;
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
+use lapidary_plan::Effect;
 use lapidary_scene::light::Falloff;
 use lapidary_scene::{Light, Scene, harmonics};
 use std::cell::OnceCell;
@@ -17,6 +18,7 @@ pub(super) struct Lighting<'a> {
     settings: &'a Settings,
     environment: OnceCell<Texture>,
     lights: OnceCell<Buffer>,
+    around: OnceCell<[DVec3; harmonics::COUNT]>,
     harmonics: OnceCell<Buffer>,
     screen: OnceCell<Picture>,
     bodies: OnceCell<Buffer>,
@@ -28,8 +30,8 @@ impl<'a> Lighting<'a> {
     /// Takes the scene's lights and bodies and the settings' environment, for pictures of up to this
     /// size in samples.
     pub(super) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
-        let (environment, lights, harmonics, screen, bodies) = Default::default();
-        Self { scene, settings, environment, lights, harmonics, screen, bodies, size }
+        let (environment, lights, around, harmonics, screen, bodies) = Default::default();
+        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, size }
     }
 
     /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how
@@ -50,7 +52,7 @@ impl<'a> Lighting<'a> {
     /// Returns the bounds of the scene's bodies.
     fn bodies(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.bodies.get_or_init(|| {
-            let records = bodies::all(self.scene, self.settings).iter().map(Body::record).collect();
+            let records = bodies::all(self.scene, self.around()).iter().map(Body::record).collect();
             builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
         })
     }
@@ -73,12 +75,16 @@ impl<'a> Lighting<'a> {
         })
     }
 
+    /// Returns the environment's harmonics.
+    fn around(&self) -> &[DVec3; harmonics::COUNT] {
+        self.around.get_or_init(|| around(self.settings))
+    }
+
     /// Returns the environment's diffuse light.
     fn harmonics(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.harmonics.get_or_init(|| {
-            let coefficients = harmonics::project(&self.settings.environment);
             let coefficients: Vec<Vec4> =
-                coefficients.iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();
+                self.around().iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();
             let harmonics = Record::new("Harmonics").with("coefficients", &coefficients[..]);
             builder.of_object("", |builder| builder.uniform("harmonics", harmonics))
         })
@@ -110,6 +116,14 @@ impl<'a> Lighting<'a> {
         }
         Ok(shared)
     }
+}
+
+/// Returns the harmonics of the environment that lights matte surfaces; 0 if it is left out.
+pub(crate) fn around(settings: &Settings) -> [DVec3; harmonics::COUNT] {
+    if settings.without.has(Effect::Environment) {
+        return [DVec3::ZERO; harmonics::COUNT];
+    }
+    harmonics::project(&settings.environment)
 }
 
 /// Returns the recipe's `Light` structs in order; one black light if the scene has none.

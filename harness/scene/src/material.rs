@@ -221,6 +221,12 @@ impl Material {
         self.transmission > 0.0 && !self.scatters()
     }
 
+    /// Whether no light enters: neither clear nor scattering.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        !self.is_clear() && !self.scatters()
+    }
+
     /// Whether light is absorbed on its way through the body.
     #[must_use]
     pub fn absorbs(&self) -> bool {

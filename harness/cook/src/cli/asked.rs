@@ -130,19 +130,8 @@ impl Asked {
                 Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
             });
         }
-        // Only if needed, because deciding measures bodies.
         if settings.shadows {
-            let all: Vec<Decisions> =
-                scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request())).collect();
-            if !all.iter().any(|decisions| decisions.has(Effect::Shadow)) {
-                let decisions = all.iter().flat_map(|decisions| &decisions.effects);
-                let shadow = decisions.into_iter().find(|decision| decision.effect == Effect::Shadow);
-                let reason = shadow.map_or("it has no object", |decision| &decision.reason);
-                return Err(Failure(format!(
-                    "scene `{}` by rung `{}`: --with {SHADOW} has no meaning: {reason}; leave it out",
-                    scene.name, settings.rung
-                )));
-            }
+            refuse_without_meaning(scene, settings, Effect::Shadow, &format!("--with {SHADOW}"))?;
         }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
         let technique = self.with.iter().find(|name| *name != SHADOW);
@@ -155,4 +144,22 @@ impl Asked {
         }
         Ok(())
     }
+}
+
+/// Refuses an option that asks for an effect which no object has. Call it only if needed, because
+/// deciding measures bodies.
+pub(super) fn refuse_without_meaning(
+    scene: &Scene,
+    settings: &Settings,
+    effect: Effect,
+    option: &str,
+) -> Result<(), Failure> {
+    let all = Decisions::all(scene, &settings.request());
+    if all.iter().any(|decisions| decisions.has(effect)) {
+        return Ok(());
+    }
+    let decision = all.iter().flat_map(|decisions| &decisions.effects).find(|decision| decision.effect == effect);
+    let reason = decision.map_or("it has no object", |decision| &decision.reason);
+    let (scene, rung) = (&scene.name, settings.rung);
+    Err(Failure(format!("scene `{scene}` by rung `{rung}`: {option} has no meaning: {reason}; leave it out")))
 }

@@ -1,7 +1,7 @@
 //! Shared options of `cook render` and `cook frame`: the scene, its camera, exposure and samples, and
 //! each technique's own.
 
-use super::asked::Asked;
+use super::asked::{Asked, refuse_without_meaning};
 use super::{Failure, number};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
@@ -224,7 +224,12 @@ impl Drawn {
         ];
         let gem = self.gem.iter().flat_map(Gem::given);
         refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;
-        refuse_meeting_nothing(&scene, &settings)?;
+        if let Some(outside) = settings.gem.outside
+            && let Some(effect) = outside.effect()
+            && !settings.without.has(effect)
+        {
+            refuse_without_meaning(&scene, &settings, effect, &format!("--outside {outside}"))?;
+        }
         if settings.gem.thickness.is_some() && settings.gem.outside != Some(Outside::Screen) {
             return Err(Failure("--thickness is for --outside screen; add that, or leave --thickness out".to_owned()));
         }
@@ -243,23 +248,6 @@ fn smoothed_at_one_sample(scene: &Scene, settings: Settings) -> Settings {
     let smooth = Settings { gem: GemOptions { footprint: true, ..settings.gem }, ..settings.clone() };
     let all = Decisions::all(scene, &smooth.request());
     if all.iter().any(|decisions| decisions.has(Effect::Footprint)) { smooth } else { settings }
-}
-
-/// Refuses what is asked of light that leaves stones, if it meets nothing there.
-fn refuse_meeting_nothing(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
-    let (effect, outside) = match settings.gem.outside {
-        Some(outside @ Outside::Screen) => (Effect::ScreenTrace, outside),
-        Some(outside @ Outside::Bodies) => (Effect::BoundsTrace, outside),
-        _ => return Ok(()),
-    };
-    let all = Decisions::all(scene, &settings.request());
-    if settings.without.has(effect) || all.iter().any(|decisions| decisions.has(effect)) {
-        return Ok(());
-    }
-    let called = all.iter().flat_map(|decisions| &decisions.effects).find(|decision| decision.effect == effect);
-    let reason = called.map_or("it has no object", |decision| &decision.reason);
-    let scene = &scene.name;
-    Err(Failure(format!("scene `{scene}`: --outside {outside} has no meaning: {reason}; leave it out")))
 }
 
 /// Refuses options of techniques that draw no object: they would be believed to have been obeyed.

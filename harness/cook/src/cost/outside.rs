@@ -2,7 +2,7 @@
 //! and its time.
 
 use super::gem::Errors;
-use super::table::{Table, figure};
+use super::table::{Table, figure, mean};
 use super::timing::{self, Timed};
 use super::{CostError, Ladder, Options, Progress, Report, Row};
 use glam::Vec3;
@@ -113,17 +113,17 @@ fn whole(report: &Report) -> Result<(), String> {
 }
 
 fn table(report: &Report) -> Table {
-    let mean = |values: Vec<Option<f64>>| {
-        let values: Option<Vec<f64>> = values.into_iter().collect();
-        values.filter(|values| !values.is_empty()).map(|values| values.iter().sum::<f64>() / values.len() as f64)
-    };
     let views = |scene: &str| -> Vec<&str> {
         report.views(MEASURES[0]).into_iter().filter(|view| view.split(',').next() == Some(scene)).collect()
     };
     let of = |way: &str, scene: &str, measure: &str| {
-        mean(views(scene).iter().map(|view| report.value(way, view, measure)).collect())
+        let values = views(scene).into_iter().map(|view| report.value(way, view, measure));
+        mean(&values.collect::<Option<Vec<_>>>()?)
     };
-    let ms = |way: &str, scene: &str| mean(views(scene).iter().map(|view| report.ms(way, view, MEASURES[0])).collect());
+    let ms = |way: &str, scene: &str| {
+        let times = views(scene).into_iter().map(|view| report.ms(way, view, MEASURES[0]));
+        mean(&times.collect::<Option<Vec<_>>>()?)
+    };
     let usual = named(WAYS[0]);
     let mut lines = Table::of("outside", "What light that leaves a stone meets", report.rungs(MEASURES[0]))
         .column("meets", |way| (*way).to_owned());

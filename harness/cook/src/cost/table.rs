@@ -165,6 +165,11 @@ pub fn marked(rung: &str, dominated: &[&str]) -> String {
     if dominated.contains(&rung) { "dominated" } else { "" }.to_owned()
 }
 
+/// Returns the mean of the values; `None` if there are none.
+pub fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -35,6 +35,7 @@ struct Face {
 impl Mattes {
     /// Takes the opaque bodies of `scene` as matte, lit by its lights and `environment`.
     pub(super) fn new(scene: &Scene, environment: Option<&Environment>) -> Self {
+        let is_matte = |object: &Object| object.material.is_opaque();
         if !scene.objects.iter().any(is_matte) {
             return Self::default();
         }
@@ -62,11 +63,6 @@ impl Mattes {
         });
         Some(matte.reflectance * (harmonics::irradiance(&self.around, normal) + lights.sum::<DVec3>()))
     }
-}
-
-/// Whether a body is opaque. One that scatters light is not meant here.
-fn is_matte(object: &Object) -> bool {
-    !object.material.is_clear() && !object.material.scatters()
 }
 
 impl Matte {

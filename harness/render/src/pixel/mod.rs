@@ -14,6 +14,7 @@ pub use surface::{SurfacePoint, Viewer};
 
 use crate as render;
 use crate::bodies::{self, Body};
+use crate::lighting::around;
 use crate::{GemMaterial, GemWavelength, Settings};
 use geometry::{Entry, Hit};
 use glam::{Mat3, UVec2, Vec3, Vec4Swizzles as _};
@@ -118,6 +119,15 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
     Exit { direction: leaving.direction, share: 1.0 - fresnel::dielectric(-normal.dot(inside), 1.0 / index) }
 }
 
+/// `GemMeeting` of the recipe, of bounds.
+#[derive(Clone, Copy)]
+struct Meeting {
+    /// Number of the body.
+    body: usize,
+    /// Radiance that it sends.
+    radiance: Vec3,
+}
+
 /// `gem_lead` of the recipe.
 fn lead(red: &Exit, green: &Exit, blue: &Exit) -> Vec3 {
     let other = if red.share > 0.0 { red.direction } else { blue.direction };
@@ -149,7 +159,8 @@ impl<'a> Shading<'a> {
     #[must_use]
     pub fn among(self, object: &Object, scene: &Scene) -> Self {
         let meets = Decisions::of(object, scene, &self.settings.request()).has(Effect::BoundsTrace);
-        Self { bodies: if meets { bodies::all(scene, self.settings) } else { Vec::new() }, ..self }
+        let bodies = if meets { bodies::all(scene, &around(self.settings)) } else { Vec::new() };
+        Self { bodies, ..self }
     }
 
     fn world_position(&self, position: Vec3) -> Vec3 {
@@ -186,23 +197,19 @@ impl<'a> Shading<'a> {
         mix(lower, upper, texels.weight.y)
     }
 
-    /// Returns the body that a ray meets first, and the distance.
-    fn hit_body(&self, position: Vec3, direction: Vec3) -> Option<(usize, f32)> {
-        bodies::hit(&self.bodies, self.world_position(position), self.world_direction(direction))
+    /// `gem_meeting` of the recipe, for bounds: the body that a ray meets first; `None` if it meets none.
+    fn meeting(&self, position: Vec3, direction: Vec3) -> Option<Meeting> {
+        let (position, direction) = (self.world_position(position), self.world_direction(direction));
+        let (body, distance) = bodies::hit(&self.bodies, position, direction)?;
+        Some(Meeting { body, radiance: self.bodies[body].sends(position + distance * direction) })
     }
 
     fn met(&self, position: Vec3, direction: Vec3) -> Option<usize> {
-        self.hit_body(position, direction).map(|(body, _)| body)
+        self.meeting(position, direction).map(|meeting| meeting.body)
     }
 
-    /// `gem_meeting` of the recipe, for bounds: the radiance of the body that a ray meets.
-    fn meeting(&self, position: Vec3, direction: Vec3) -> Option<Vec3> {
-        let (body, distance) = self.hit_body(position, direction)?;
-        Some(self.bodies[body].sends(self.world_position(position) + distance * self.world_direction(direction)))
-    }
-
-    fn arriving(&self, meeting: Option<Vec3>, direction: Vec3) -> Vec3 {
-        meeting.unwrap_or_else(|| self.environment(direction))
+    fn arriving(&self, meeting: Option<Meeting>, direction: Vec3) -> Vec3 {
+        meeting.map_or_else(|| self.environment(direction), |meeting| meeting.radiance)
     }
 
     fn surroundings(&self, position: Vec3, direction: Vec3) -> Vec3 {

@@ -3,7 +3,7 @@ use crate::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
 use crate::polyhedron::Polyhedron;
-use crate::{Averaging, Object, Scene};
+use crate::{Averaging, Scene};
 use glam::Vec3;
 use lapidary_assay::extremum::largest;
 
@@ -52,8 +52,7 @@ fn every_triangle_lies_in_its_facet() {
 fn built_in_stones_are_convex_but_for_the_bunny_and_many_prisms_in_one_mesh() {
     for built_in in crate::BUILT_IN {
         let scene = Scene::named(built_in.name).unwrap();
-        let is_matte = |object: &&Object| !object.material.is_clear() && !object.material.scatters();
-        let mut stones = scene.objects.iter().filter(|object| !is_matte(object));
+        let mut stones = scene.objects.iter().filter(|object| !object.material.is_opaque());
         let convex = stones.all(|object| planes_of_convex(object.shape()).is_some());
         // Translucent bodies are round.
         let round = scene.objects.iter().any(|object| object.material.medium.is_some());

@@ -10,7 +10,7 @@ use super::{FILLED, MEASURES, RUNGS};
 use crate::cost::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
 use crate::cost::quality;
 use crate::cost::report::{Report, TIME, all_pairs, distinct, dominated};
-use crate::cost::table::{Goal, Table, beyond, figure, marked, sum};
+use crate::cost::table::{Goal, Table, beyond, figure, marked, mean, sum};
 use lapidary_plan::ladder::CONCAVE;
 use lapidary_plan::{Geometry, Rung, Spectrum, Technique};
 
@@ -88,10 +88,6 @@ impl<'r> Gem<'r> {
         let bytes = self.report.row(rung, FILLED, TIME).and_then(|row| row.bytes);
         bytes.map_or("-".to_owned(), |bytes| bytes.to_string())
     }
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 pub(super) fn tables(report: &Report) -> Vec<Table> {
