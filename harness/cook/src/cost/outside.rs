@@ -10,7 +10,7 @@ use lapidary_gpu::Gpu;
 use lapidary_plan::{Outside, Rung};
 use lapidary_render as render;
 use lapidary_render::{GemOptions, Picture, SCREEN_STEPS, Settings};
-use lapidary_scene::{Material, Scene};
+use lapidary_scene::{Material, Object, Scene};
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -33,6 +33,9 @@ const WAYS: [(Outside, u32); 6] = [
     (Outside::Screen, 32),
     (Outside::Screen, 64),
 ];
+
+/// The reference without what stones send to one another.
+const ALONE: &str = "everything but other stones, exactly";
 
 /// What is measured: errors over the pixels that show a stone.
 const MEASURES: [&str; 3] = ["flip", "rmse", "energy"];
@@ -62,9 +65,13 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         progress("comparing and timing views", done, total);
         let scene = Scene::named(name)?.seen_from(polar, azimuth);
         let view = format!("{name}, {polar}°, {azimuth}°");
-        let shows_stone = stones(gpu, &scene, &usual)?;
+        let shows_stone = shows(gpu, &scene, &usual, &clear(&scene).collect::<Vec<_>>())?;
         let exact = Settings { rung: Rung::Reference, samples: REFERENCE_SAMPLES, ..usual.clone() };
         let reference = kept(render::render_means(gpu, &scene, &exact)?, &shows_stone);
+        let apart = kept(each_alone(gpu, &scene, &exact, &usual)?, &shows_stone);
+        for (measure, value) in MEASURES.into_iter().zip(errors(&apart, &reference)) {
+            report.rows.push(Row::new(ALONE, &view, measure, value, ""));
+        }
         let settings = |(outside, screen_steps)| {
             let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
             Settings { gem, ..usual.clone() }
@@ -73,9 +80,8 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;
         for (way, timing) in WAYS.into_iter().zip(timings) {
             let picture = kept(render::render_means(gpu, &scene, &settings(way))?, &shows_stone);
-            let Errors { flip, rmse, energy } = Errors::between(&picture, &reference);
             let ms = timing.map(|timing| timing.ms);
-            for (measure, value) in MEASURES.into_iter().zip([flip, rmse, energy]) {
+            for (measure, value) in MEASURES.into_iter().zip(errors(&picture, &reference)) {
                 report.rows.push(Row::new(&named(way), &view, measure, value, "").timed(ms));
             }
         }
@@ -83,12 +89,46 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     Ok(report)
 }
 
-/// Returns which pixels show a stone: those that change with its colour, were it matte.
-fn stones(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<bool>, CostError> {
-    let with = |base_color: Vec3| {
+/// Returns what is measured of a picture against the reference.
+fn errors(picture: &Picture, reference: &Picture) -> [f64; MEASURES.len()] {
+    let Errors { flip, rmse, energy } = Errors::between(picture, reference);
+    [flip, rmse, energy]
+}
+
+/// Returns the reference's picture of a scene's stones, each among the matte bodies alone: what a way
+/// shows at best that meets all but other stones.
+fn each_alone(gpu: &Gpu, scene: &Scene, exact: &Settings, usual: &Settings) -> Result<Picture, CostError> {
+    let mut together = render::render_means(gpu, scene, exact)?;
+    let clear: Vec<usize> = clear(scene).collect();
+    for only in clear.iter().copied() {
+        let mut alone = scene.clone();
+        for other in clear.iter().rev().copied().filter(|other| *other != only) {
+            alone.objects.remove(other);
+        }
+        let shows_it = shows(gpu, scene, usual, &[only])?;
+        let picture = render::render_means(gpu, &alone, exact)?;
+        for (place, _) in shows_it.iter().enumerate().filter(|(_, shows_it)| **shows_it) {
+            together.linear[place] = picture.linear[place];
+            together.encoded[place] = picture.encoded[place];
+        }
+    }
+    Ok(together)
+}
+
+/// Returns the places of a scene's stones among its objects.
+fn clear(scene: &Scene) -> impl Iterator<Item = usize> {
+    let is_clear = |(place, object): (usize, &Object)| object.material.is_clear().then_some(place);
+    scene.objects.iter().enumerate().filter_map(is_clear)
+}
+
+/// Returns which pixels show one of some stones: those that change with its colour, were all stones
+/// matte.
+fn shows(gpu: &Gpu, scene: &Scene, settings: &Settings, stones: &[usize]) -> Result<Vec<bool>, CostError> {
+    let with = |color: Vec3| {
         let mut scene = scene.clone();
-        for object in scene.objects.iter_mut().filter(|object| object.material.is_clear()) {
-            object.material = Material { base_color, ior: 1.0, roughness: 1.0, ..Material::standard() };
+        for place in clear(&scene).collect::<Vec<_>>() {
+            let base_color = if stones.contains(&place) { color } else { Vec3::ZERO };
+            scene.objects[place].material = Material { base_color, ior: 1.0, roughness: 1.0, ..Material::standard() };
         }
         render::render(gpu, &scene, settings)
     };
@@ -106,7 +146,9 @@ fn kept(mut picture: Picture, is_kept: &[bool]) -> Picture {
 }
 
 fn whole(report: &Report) -> Result<(), String> {
-    if report.rungs(MEASURES[0]).len() == WAYS.len() && report.views(MEASURES[0]).len() == SCENES.len() * VIEWS.len() {
+    if report.rungs(MEASURES[0]).len() == WAYS.len() + 1
+        && report.views(MEASURES[0]).len() == SCENES.len() * VIEWS.len()
+    {
         return Ok(());
     }
     Err("the report does not hold all ways and views".to_owned())
