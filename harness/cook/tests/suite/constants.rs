@@ -31,6 +31,7 @@ mirrored! {
     convex_trace, lapidary_convex_trace: CONVEX_TRACE_NONE CONVEX_TRACE_FAR;
     bounds_trace, lapidary_bounds_trace: BOUNDS_TRACE_NONE BOUNDS_TRACE_PARALLEL;
     screen_trace, lapidary_screen_trace: SCREEN_TRACE_FAR SCREEN_TRACE_PARALLEL;
+    half_space, lapidary_half_space: HALF_SPACE_GRAZING HALF_SPACE_NO_LIGHT HALF_SPACE_LEAST_TURNED HALF_SPACE_DENSEST HALF_SPACE_LAST_EDGE;
     convex_walk, lapidary_convex_walk: CONVEX_WALK_FACE CONVEX_WALK_SHIFT CONVEX_WALK_PLACE CONVEX_WALK_MORE
         CONVEX_WALK_STEPS CONVEX_WALK_PARALLEL;
     curvature, lapidary_curvature: CURVATURE_SMALLEST CURVATURE_EDGE_ON CURVATURE_ZENITH;
