@@ -137,6 +137,7 @@ impl Case<'_> {
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::OpticalPath => self.optical_path(),
+            Effect::Diffusion => self.diffusion(),
             Effect::Surface => {
                 self.along_a_way().map_or_else(off, |()| on("light also goes through what is thinner than a voxel"))
             }
@@ -203,6 +204,7 @@ impl Case<'_> {
                 short(material.attenuation_distance)
             )),
             Rung::OpticalPath(_) => off("part of the way's cost, with what scattering takes"),
+            Rung::Diffusion(_) => off("part of diffusion, with what scattering takes"),
             Rung::Diffuse(_) if material.medium.is_some() => off("part of the base colour and of sigma0"),
             _ => off(self.not_clear()),
         }
@@ -281,7 +283,7 @@ impl Case<'_> {
     fn cdrf(&self) -> Answer {
         let Rung::Diffuse(reflectance) = self.rung else {
             return match self.rung {
-                Rung::OpticalPath(_) => off("light is followed through the body instead"),
+                Rung::OpticalPath(_) | Rung::Diffusion(_) => off("light is followed through the body instead"),
                 _ => off("nothing inside scatters"),
             };
         };
@@ -321,37 +323,55 @@ impl Case<'_> {
             Rung::Diffuse(_) if self.material.scatters() => {
                 off(format!("the rung {} spreads light by curvature", self.rung))
             }
-            Rung::OpticalPath(_) => off("light is followed through the body instead"),
+            Rung::OpticalPath(_) | Rung::Diffusion(_) => off("light is followed through the body instead"),
             _ => off("nothing inside scatters"),
         }
     }
 
-    fn through(&self, called: &str) -> Answer {
+    /// Whether light is followed through the body by a technique, which is that of the rung or not.
+    fn through(&self, is_the_rungs: bool) -> Answer {
         match self.rung {
-            Rung::OpticalPath(_) => on(called),
+            Rung::OpticalPath(_) | Rung::Diffusion(_) if !is_the_rungs => {
+                off(format!("the rung {} follows light through the body", self.rung))
+            }
+            Rung::OpticalPath(_) | Rung::Diffusion(_) if self.scene.lights.is_empty() => {
+                off("no light but the environment, which goes no way through bodies")
+            }
+            Rung::OpticalPath(_) | Rung::Diffusion(_) => {
+                let called = self.material.medium.as_ref().map(|Medium { scattering, absorption, .. }| {
+                    format!("scattering {}, absorption {}", triple(*scattering), triple(*absorption))
+                });
+                on(called.unwrap_or_else(|| "the rung".to_owned()))
+            }
             Rung::Diffuse(_) if self.material.scatters() => off("no light is followed through the body"),
             _ => off("nothing inside scatters"),
         }
     }
 
     fn optical_path(&self) -> Answer {
-        let called = self.material.medium.as_ref().map(|Medium { scattering, absorption, .. }| {
-            format!("scattering {}, absorption {}", triple(*scattering), triple(*absorption))
-        });
-        let (through, reason) = self.through(called.as_deref().unwrap_or("the rung"));
-        if through && self.scene.lights.is_empty() {
-            return off("no light but the environment, which goes no way through bodies");
+        self.through(matches!(self.rung, Rung::OpticalPath(_)))
+    }
+
+    fn diffusion(&self) -> Answer {
+        self.through(matches!(self.rung, Rung::Diffusion(_)))
+    }
+
+    /// Returns `Ok` if light is followed through the body on voxels, else the reason why not.
+    fn on_voxels(&self) -> Result<(), String> {
+        let effect = if matches!(self.rung, Rung::Diffusion(_)) { Effect::Diffusion } else { Effect::OpticalPath };
+        match self.through(true) {
+            (true, _) if self.request.without.has(effect) => Err(format!("{effect} is left out")),
+            (true, _) => Ok(()),
+            (false, reason) => Err(reason),
         }
-        (through, reason)
     }
 
     /// Returns `Ok` if light paths through the body are followed, else the reason why not.
     fn along_a_way(&self) -> Result<(), String> {
-        match self.optical_path() {
-            (true, _) if self.request.without.has(Effect::OpticalPath) => Err("optical_path is left out".to_owned()),
-            (true, _) => Ok(()),
-            (false, reason) => Err(reason),
+        if matches!(self.rung, Rung::Diffusion(_)) {
+            return Err("diffusion needs no paths".to_owned());
         }
+        self.on_voxels()
     }
 
     fn color(&self) -> Answer {
@@ -372,7 +392,7 @@ impl Case<'_> {
     }
 
     fn extinction_per_voxel(&self) -> Answer {
-        if let Err(reason) = self.along_a_way() {
+        if let Err(reason) = self.on_voxels() {
             return off(reason);
         }
         match self.material.medium.as_ref().map(|medium| &medium.density) {
@@ -388,7 +408,9 @@ impl Case<'_> {
             Rung::Diffuse(Reflectance::LambertShadowed) => "the rung casts shadows",
             Rung::Diffuse(_) if self.request.shadows => "asked for",
             Rung::Diffuse(_) => return off("not asked for by --with shadow or the rung lambert-shadowed"),
-            Rung::OpticalPath(_) => return off("part of the rung: ways start where a light sees the body"),
+            Rung::OpticalPath(_) | Rung::Diffusion(_) => {
+                return off("part of the rung: light enters where its source sees the body");
+            }
             _ => return off("clear bodies are lit by the environment"),
         };
         if self.scene.lights.is_empty() {

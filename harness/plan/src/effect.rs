@@ -65,6 +65,8 @@ effects! {
     TextureDiffusion = "texture_diffusion", "EFFECT_TEXTURE_DIFFUSION";
     /// Light through a body, along the path of least cost.
     OpticalPath = "optical_path", "EFFECT_OPTICAL_PATH";
+    /// Light through a body, by the diffusion of its fluence.
+    Diffusion = "diffusion", "EFFECT_DIFFUSION";
     /// Voxels touched by the surface, in addition to those whose centre is inside.
     Surface = "surface", "EFFECT_SURFACE";
     /// Path cost that differs between colours.

@@ -94,7 +94,7 @@ impl Case<'_> {
             return None;
         }
         let takes_a_solid = match self.rung {
-            Rung::Inside { .. } | Rung::OpticalPath(_) => true,
+            Rung::Inside { .. } | Rung::OpticalPath(_) | Rung::Diffusion(_) => true,
             Rung::Reference => material.is_clear(),
             _ => false,
         };

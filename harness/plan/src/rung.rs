@@ -25,6 +25,8 @@ pub enum Rung {
     Diffuse(Reflectance),
     /// Light along the cheapest paths through a body, on voxels.
     OpticalPath(Paths),
+    /// Diffusion of light through a body, on a grid with this number of cells along each edge.
+    Diffusion(u32),
     /// The reference, on the CPU in f64: spectral for clear stones, random walks for scattering
     /// bodies.
     Reference,
@@ -66,7 +68,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 35] = [
+pub const NAMES: [&str; 36] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -101,13 +103,15 @@ pub const NAMES: [&str; 35] = [
     "ping-pong-26-64",
     "tiled-26-64",
     "godunov-64",
+    "diffusion-64",
     "reference",
 ];
 /// The grammar of rung names, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+split|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
-     quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
-     cells, such as godunov-64; for both reference";
+     quadrature, spherical, blur, or diffusion-CELLS with 16 to 128 cells, such as diffusion-64, or \
+     (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 cells, such as godunov-64; \
+     for both reference";
 
 const GEOMETRIES: [(&str, Geometry); 5] = [
     ("proxy", Geometry::Proxy),
@@ -130,6 +134,7 @@ impl Rung {
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
             Self::Diffuse(_) => "cdrf_shading",
             Self::OpticalPath(_) => "optical_path_shading",
+            Self::Diffusion(_) => "diffusion_shading",
             Self::ByMaterial | Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => {
                 "gem"
             }
@@ -167,6 +172,7 @@ impl From<Solver> for Rung {
         match solver {
             Solver::Diffuse(reflectance) => Self::Diffuse(reflectance),
             Solver::OpticalPath(paths) => Self::OpticalPath(paths),
+            Solver::Diffusion(cells) => Self::Diffusion(cells),
         }
     }
 }
@@ -179,6 +185,7 @@ impl fmt::Display for Rung {
             Self::Surface => return f.write_str("surface"),
             Self::Diffuse(reflectance) => return write!(f, "{}", Solver::Diffuse(*reflectance)),
             Self::OpticalPath(paths) => return write!(f, "{}", Solver::OpticalPath(*paths)),
+            Self::Diffusion(cells) => return write!(f, "{}", Solver::Diffusion(*cells)),
             Self::Reference => return f.write_str("reference"),
         };
         let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);
@@ -205,8 +212,8 @@ impl FromStr for Rung {
         }
         match text.parse::<Solver>() {
             Ok(solver) => return Ok(solver.into()),
-            Err(NoSolver::Cells(cells)) => return Err(NoSolver::Cells(cells).to_string()),
             Err(NoSolver::Unknown) => {}
+            Err(error @ NoSolver::Cells { .. }) => return Err(error.to_string()),
         }
         let unknown = || format!("no such rung{}; a rung is {GRAMMAR}", nearest::suggest(text, &NAMES));
         let (way, spectrum) = text.split_once('+').map_or((text, None), |(way, spectrum)| (way, Some(spectrum)));

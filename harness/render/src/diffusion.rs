@@ -1,109 +1,262 @@
-//! Texture diffusion of one object: the recipe `texture_irradiance` draws the irradiance, and the
-//! recipe `texture_diffusion` blurs it.
+//! Translucent stone by diffusion: the pass of the recipe `diffusion_shading`, and those that compute
+//! the fluence that it looks up, each frame on the device: cells, the lights' maps, the source, and
+//! multigrid.
 
-use super::RenderError;
-use super::mesh_buffers;
-use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
-use super::translucent::{self, Light};
-use crate::frame::{BindGroupId, Buffer, Builder, PipelineId, PipelineSource, Texture};
-use lapidary_scene::Object;
-use lapidary_scene::layout::Layout;
+mod cells;
+mod levels;
+mod source;
 
-/// Name of the recipe.
-const RECIPE: &str = "texture_irradiance";
-/// Texels along each side, as in the paper.
-pub(super) const SIDE: u32 = 1024;
+use super::density::Densities;
+use super::light_maps::{LightMaps, Lit};
+use super::lighting::Lighting;
+use super::mesh_buffers::MeshBuffers;
+use super::optical_path::{self, Stage};
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
+use super::reflective_shadow_map::ReflectiveShadowMaps;
+use super::variant::{Drawn, Part};
+use super::{RenderError, Settings};
+use crate::frame::{Bound, Buffer, Builder, Executor, Frame, PipelineId, PipelineSource};
+use crate::record::Record;
+use crate::voxel_grid::VoxelGrid;
+use cells::Cells;
+use glam::Vec3;
+use lapidary_gpu::GpuError;
+use lapidary_plan::{Effect, Note};
+use lapidary_scene::{Bounds, Density, Material, Object};
+use levels::Levels;
+use source::Source;
+use std::ops::Range;
 
-/// Textures of an object, and the passes that fill them.
-pub(super) struct Diffusion {
-    textures: TextureDiffusion,
-    /// Name of the object.
-    name: String,
-    pipeline: PipelineId,
-    /// Groups for the lights and harmonics, then for the mesh.
-    groups: Vec<Option<BindGroupId>>,
-    vertices: u32,
-    taps: Taps,
-    charts: Vec<Chart>,
+/// Extinction per voxel spacing that thinner matter counts as: without any, light does not diffuse.
+const THINNEST: f32 = 1e-4;
+
+/// Matter of a body as the recipes take it, in each channel; lengths are in voxel spacings.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Matter {
+    /// Extinction per voxel spacing where the density is 1.
+    pub(super) extinction: Vec3,
+    /// The root of 1 - albedo.
+    pub(super) gamma: Vec3,
 }
 
-impl Diffusion {
-    /// Creates the passes for `object`, which must have texture coordinates.
-    ///
-    /// `light` and `constants` are the lights and harmonics with their overrides; the last
-    /// parameter holds the mesh's positions, normals and texture coordinates as drawn.
-    pub(super) fn new(
-        builder: &mut Builder<'_>,
-        (object, name): (&Object, &str),
-        (light, constants): (Light<'_>, &[(&str, f64)]),
-        [positions, normals, uvs]: [Buffer; 3],
-    ) -> Result<Self, RenderError> {
+impl Matter {
+    fn of(material: &Material, grid: VoxelGrid) -> Self {
+        let Some(medium) = &material.medium else {
+            return Self { extinction: Vec3::splat(THINNEST), gamma: Vec3::ONE };
+        };
+        let extinction = medium.transport_extinction();
+        // Where nothing scatters or absorbs, nothing is sent back either.
+        let absorbed = Vec3::select(extinction.cmpgt(Vec3::ZERO), medium.absorption / extinction, Vec3::ONE);
+        Self { extinction: (extinction * grid.spacing).max(Vec3::splat(THINNEST)), gamma: absorbed.map(f32::sqrt) }
+    }
+
+    /// Milne's length in voxel spacings where the density is 1.
+    pub(super) fn milne(&self) -> Vec3 {
+        lapidary_diffusion::DIFFUSION_MILNE / self.extinction
+    }
+}
+
+/// The passes of a frame before the bodies are drawn.
+pub(super) struct Diffusions {
+    maps: ReflectiveShadowMaps,
+    bodies: Vec<BodyDiffusion>,
+}
+
+/// Buffers and passes of one body.
+struct BodyDiffusion {
+    /// Name of its object.
+    name: String,
+    grid: VoxelGrid,
+    cells: Cells,
+    densities: Option<Densities>,
+    source: Source,
+    levels: Levels,
+}
+
+/// Compiles `source`, the composed recipe, for the effects of each body, and adds the bodies.
+pub(super) fn pass(
+    builder: &mut Builder<'_>,
+    lighting: &Lighting<'_>,
+    part: &Part<'_>,
+    cells: u32,
+    source: &str,
+) -> Result<ScenePass, RenderError> {
+    for drawn in &part.objects {
+        optical_path::check(drawn.object, part.rung)?;
+    }
+    let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, cells)?;
+    let mut pass = ScenePass::default();
+    let mut bodies = Vec::new();
+    for (constants, objects) in part.variants(|drawn| drawn.decisions.constants()) {
         let pipeline = builder.render_pipeline(&PipelineSource {
-            recipe: RECIPE,
-            source: &lapidary_wgsl::recipe_source(RECIPE),
-            entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
-            constants,
-            formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
-            depth: None,
+            recipe: part.rung.recipe(),
+            source,
+            entries: ["diffusion_vertex", "diffusion_fragment"],
+            constants: &constants,
+            formats: &[SAMPLE_FORMAT],
+            depth: Some(DEPTH_FORMAT),
         })?;
-        let Layout { repeats, charts } = Layout::of(&object.mesh);
-        let textures = TextureDiffusion::new(builder, [SIDE; 2], [repeats.x, repeats.y])?;
-        // Halos first: if a halo and a chart's own triangle touch the same texel, the triangle
-        // stays.
-        let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
-        let vertices = mesh_buffers::vertices(object, &drawn, [bytemuck::cast_slice(&drawn)])?;
-        let shared = translucent::shared(builder, light, pipeline)?;
-        let indices = builder.storage("indices with halos", bytemuck::cast_slice(&drawn));
-        let own = [(0, positions.into()), (1, indices.into()), (2, normals.into()), (3, uvs.into())];
-        let groups = vec![builder.bind(pipeline, 0, &shared), builder.bind(pipeline, 1, &own)];
-        Ok(Self {
-            textures,
-            name: name.to_owned(),
-            pipeline,
-            groups,
-            vertices,
-            taps: Taps::new(object.material.sigma0.unwrap_or_default()),
-            charts: apart(charts.into_iter().map(texels).collect()),
+        let mut shared = lighting.shared(builder, pipeline)?;
+        shared.extend([(4, lit.views.into()), (5, lit.maps)]);
+        let add = Add { pipeline, constants: &constants, cells, lit: &lit, largest, settings: part.settings };
+        let mut drawn_bodies = Vec::new();
+        for drawn in objects {
+            let (body, of_body) = builder.of_object(&drawn.name, |builder| add.body(builder, drawn, &mut maps))?;
+            drawn_bodies.push(body);
+            bodies.extend(of_body);
+        }
+        pass.variants.push(Variant { pipeline, targets: 1, reads_screen: false, shared, bodies: drawn_bodies });
+    }
+    pass.before.push(Before::Diffusions(Diffusions { maps, bodies }));
+    Ok(pass)
+}
+
+/// Inputs for adding a body, besides the body itself.
+struct Add<'a> {
+    pipeline: PipelineId,
+    /// Values of the recipes' overrides for this variant.
+    constants: &'a [(&'a str, f64)],
+    cells: u32,
+    lit: &'a Lit,
+    /// Irradiance that counts as 1, for each channel.
+    largest: Vec3,
+    settings: &'a Settings,
+}
+
+impl Add<'_> {
+    /// Returns a body to draw and, if light diffuses through it, the passes before. Also adds the body
+    /// to the maps.
+    fn body(
+        &self,
+        builder: &mut Builder<'_>,
+        drawn: &Drawn<'_>,
+        maps: &mut ReflectiveShadowMaps,
+    ) -> Result<(Body, Option<BodyDiffusion>), RenderError> {
+        let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
+        let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.cells);
+        let matter = Matter::of(material, grid);
+        let buffers = MeshBuffers::of(builder, drawn.object)?;
+        maps.add(builder, name, &buffers);
+        let of_body = if decisions.has(Effect::Diffusion) {
+            Some(self.diffusion(builder, drawn, grid, matter, &buffers)?)
+        } else {
+            None
+        };
+        let record = builder.record("material", record_of(grid, material, matter, self.largest));
+        let MeshBuffers { positions, indices, normals, vertices } = buffers;
+        let mut resources: Vec<(u32, Bound)> =
+            (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
+        if let Some(of_body) = &of_body {
+            resources.push((4, of_body.levels.packed.into()));
+            resources.extend(of_body.densities.as_ref().map(|densities| (5, densities.buffer.into())));
+        }
+        let group = builder.bind(self.pipeline, 1, &resources);
+        Ok((Body { name: name.clone(), groups: vec![group], vertices, instances: 1 }, of_body))
+    }
+
+    /// Returns the buffers and passes of light that diffuses through a body.
+    fn diffusion(
+        &self,
+        builder: &mut Builder<'_>,
+        drawn: &Drawn<'_>,
+        grid: VoxelGrid,
+        matter: Matter,
+        mesh: &MeshBuffers,
+    ) -> Result<BodyDiffusion, RenderError> {
+        let Drawn { object: Object { mesh: shape, material, .. }, name, decisions } = drawn;
+        let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
+        let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
+        let bits = Cells::matter(builder, grid);
+        let densities = Densities::new(builder, grid, density, bits)?;
+        let of_voxel = densities.as_ref().map(|densities| densities.buffer);
+        let cells = Cells::new(builder, grid, (shape, mesh), self.constants, (matter, material), (bits, of_voxel))?;
+        let levels = Levels::new(builder, grid, &cells, self.settings.diffusion)?;
+        let source = Source::new(
+            builder,
+            grid,
+            (self.lit, self.largest),
+            matter,
+            &source::Buffers {
+                nodes: cells.nodes,
+                fine: cells.voxelizer.matter,
+                density: of_voxel,
+                right: levels.right(),
+            },
+            self.constants,
+        )?;
+        Ok(BodyDiffusion { name: name.clone(), grid, cells, densities, source, levels })
+    }
+}
+
+/// Fills `DiffusionBody` of the recipe.
+fn record_of(grid: VoxelGrid, material: &Material, matter: Matter, largest: Vec3) -> Record {
+    let record = Record::new("DiffusionBody").within("grid", |record| grid.fill(record));
+    let record = record.with("extinction", matter.extinction).with("index", material.ior);
+    let record = record.with("gamma", matter.gamma).with("alpha", material.roughness * material.roughness);
+    record.with("largest", largest)
+}
+
+impl Diffusions {
+    /// Encodes the passes that compute all that the frame's picture looks up, from the meshes and
+    /// lights alone. Returns the range of passes of each stage except [`Stage::Shade`].
+    pub(super) fn encode(&self, builder: &mut Builder<'_>) -> [Range<usize>; Stage::ALL.len() - 1] {
+        [Stage::Voxels, Stage::Maps, Stage::Seeds, Stage::Solve].map(|stage| {
+            let start = builder.frame().passes.len();
+            if stage == Stage::Maps {
+                self.maps.encode(builder);
+            } else {
+                for body in &self.bodies {
+                    builder.of_object(&body.name, |builder| body.encode(builder, stage));
+                }
+            }
+            start..builder.frame().passes.len()
         })
     }
 
-    /// Returns the texture that shading looks up.
-    pub(super) fn diffused(&self) -> Texture {
-        self.textures.diffused
-    }
-
-    /// Draws the irradiance and blurs it.
-    pub(super) fn encode(&self, builder: &mut Builder<'_>) {
-        builder.of_object(&self.name, |builder| {
-            let draw = builder.draw(self.pipeline, self.groups.clone(), self.vertices);
-            builder.draw_to(RECIPE, &[self.textures.irradiance, self.textures.stretch], None, vec![draw]);
-            self.textures.encode(builder, &self.taps, &self.charts);
-        });
-    }
-}
-
-/// Returns the texels that a box of texture coordinates touches.
-fn texels([low, high]: [glam::Vec2; 2]) -> Chart {
-    let place = |value: f32| value.clamp(0.0, SIDE as f32) as u32;
-    let (low, high) = ((low * SIDE as f32).floor(), (high * SIDE as f32).ceil());
-    Chart { low: [place(low.x), place(low.y)], high: [place(high.x), place(high.y)] }
-}
-
-/// Merges boxes that touch, so that boxes blurred separately have a texel between them.
-fn apart(mut charts: Vec<Chart>) -> Vec<Chart> {
-    let touch = |a: &Chart, b: &Chart| (0..2).all(|k| a.low[k] <= b.high[k] && b.low[k] <= a.high[k]);
-    let mut merged: Vec<Chart> = Vec::new();
-    while let Some(mut chart) = charts.pop() {
-        while let Some(place) = merged.iter().position(|other| touch(&chart, other)) {
-            let other = merged.swap_remove(place);
-            for k in 0..2 {
-                chart.low[k] = chart.low[k].min(other.low[k]);
-                chart.high[k] = chart.high[k].max(other.high[k]);
+    /// Returns the notes on the last frame that was run. Waits for it.
+    pub(super) fn notes(&self, executor: &Executor<'_>) -> Result<Vec<Note>, GpuError> {
+        let mut notes = Vec::new();
+        for body in &self.bodies {
+            let odd_columns = body.cells.voxelizer.status(executor)?.odd_columns;
+            if odd_columns > 0 {
+                let columns = 4 * body.grid.cells * body.grid.cells;
+                notes.push(Note::Open { object: body.name.clone(), odd_columns, columns });
             }
         }
-        merged.push(chart);
+        Ok(notes)
     }
-    merged
+
+    /// Size in bytes of the maps and of each body's cells, densities, source and levels.
+    pub(super) fn bytes(&self, frame: &Frame) -> u64 {
+        let of = |body: &BodyDiffusion| {
+            let densities = body.densities.as_ref().map_or(0, |densities| densities.bytes(frame));
+            body.cells.bytes(frame) + densities + body.source.bytes(frame) + body.levels.bytes(frame)
+        };
+        self.maps.bytes(frame) + self.bodies.iter().map(of).sum::<u64>()
+    }
+}
+
+impl BodyDiffusion {
+    /// Encodes this body's part of a stage.
+    fn encode(&self, builder: &mut Builder<'_>, stage: Stage) {
+        match stage {
+            Stage::Voxels => {
+                self.cells.encode_voxels(builder);
+                if let Some(densities) = &self.densities {
+                    densities.encode(builder);
+                }
+                self.cells.encode(builder);
+            }
+            Stage::Seeds => self.source.encode(builder),
+            Stage::Solve => self.levels.encode(builder),
+            Stage::Maps | Stage::Shade => {}
+        }
+    }
+}
+
+/// Returns the sum of the sizes of buffers in bytes.
+fn bytes_of(frame: &Frame, buffers: &[Buffer]) -> u64 {
+    buffers.iter().map(|buffer| frame.resource(*buffer).bytes()).sum()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::lighting::Lighting;
 use super::pass::{Before, SAMPLE_FORMAT, ScenePass};
 use super::shadows::Shadows;
 use super::variant::Part;
-use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
+use super::{RenderError, Settings, Tile, camera, diffusion, gem, optical_path, translucent};
 use crate::frame::{Builder, Frame};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Rung};
@@ -116,13 +116,14 @@ pub(super) fn scene_pass(
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];
         all.append(match part.rung {
-            Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.gem.deferred => {
+            Rung::Diffuse(_) | Rung::OpticalPath(_) | Rung::Diffusion(_) if settings.gem.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
             }
             Rung::Diffuse(reflectance) => {
                 translucent::pass(builder, (lighting, shadows.as_ref()), part, reflectance, source)?
             }
             Rung::OpticalPath(paths) => optical_path::pass(builder, lighting, part, paths, source)?,
+            Rung::Diffusion(cells) => diffusion::pass(builder, lighting, part, cells, source)?,
             _ if settings.gem.deferred => {
                 gem::pass(builder, lighting, part, source, ("gem_deferred_fragment", deferred))?
             }

@@ -14,11 +14,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod blur;
 mod bodies;
 mod camera;
 pub mod cdrf;
 pub mod compute;
 mod deferred;
+mod density;
 mod diffusion;
 mod display;
 mod drawing;
@@ -29,6 +31,7 @@ mod footprint;
 pub mod frame;
 mod gem;
 mod layers;
+mod light_maps;
 mod light_views;
 mod lighting;
 mod mesh_buffers;
@@ -68,8 +71,8 @@ use lapidary_scene::{Environment, LARGEST_SIDE, Material, Object, Scene};
 pub use optical_path::Stage;
 pub use reflectance::Curvature;
 pub use settings::{
-    DiffuseOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, SCREEN_STEPS, Settings, WALKS,
-    WalkOptions,
+    DiffuseOptions, DiffusionOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, SCREEN_STEPS,
+    Settings, WALKS, WalkOptions,
 };
 use std::sync::Mutex;
 pub use stone::geometry_bytes;
@@ -214,8 +217,9 @@ fn render_from(
             progress(done, tiles);
         }
     })?;
-    let notes = pass.paths().map(|paths| paths.notes(&executor));
-    picture.notes = notes.collect::<Result<Vec<_>, _>>()?.concat();
+    let of_paths = pass.paths().map(|paths| paths.notes(&executor));
+    let of_diffusions = pass.diffusions().map(|diffusions| diffusions.notes(&executor));
+    picture.notes = of_paths.chain(of_diffusions).collect::<Result<Vec<_>, _>>()?.concat();
     Ok(picture)
 }
 

@@ -23,6 +23,7 @@ pub(super) fn vertices<'a>(
 }
 
 /// A mesh's positions, indices and normals.
+#[derive(Clone, Copy)]
 pub(super) struct MeshBuffers {
     /// Three floats per vertex.
     pub(super) positions: Buffer,

@@ -1,15 +1,15 @@
 //! Translucent stone: the pass of the recipe `optical_path_shading`, and the stages that compute
 //! its costs each frame on the device: voxels, reflective shadow maps, seeds and a solver.
 
-mod density;
 mod seeds;
 mod stage;
 
-use super::light_views;
+use super::density::Densities;
+use super::light_maps::{LightMaps, Lit};
 use super::lighting::Lighting;
 use super::mesh_buffers::MeshBuffers;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
-use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
+use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Executor, Frame, PipelineId, PipelineSource};
@@ -17,23 +17,15 @@ use crate::record::Record;
 use crate::solver::{Solve, Solved, Solver, Status};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
-use density::Densities;
 use glam::Vec3;
 use lapidary_gpu::GpuError;
 use lapidary_plan::{Effect, Note, Rung};
 use lapidary_scene::solver::Paths;
-use lapidary_scene::{Bounds, Density, Light, Material, Object};
-use seeds::{Lit, Seeded, Seeds};
+use lapidary_scene::{Bounds, Density, Material, Object};
+use seeds::{Seeded, Seeds};
 pub use stage::Stage;
 use std::f32::consts::FRAC_1_PI;
 use std::ops::Range;
-
-/// Texels along a side of a map for each voxel along an edge of a grid that encloses all bodies:
-/// the sphere around a body is up to 1.7 grids wide.
-const TEXELS_PER_VOXEL: u32 = 4;
-/// Upper limit on a map's side in texels: smaller bodies get larger maps, so that none of their
-/// voxels is missed, up to this side.
-const MOST_TEXELS: u32 = 2048;
 
 /// The passes of a frame before the bodies are drawn.
 pub(super) struct OpticalPaths {
@@ -73,18 +65,7 @@ pub(super) fn pass(
     for drawn in &part.objects {
         check(drawn.object, part.rung)?;
     }
-    let bounds = part.bounds();
-    // A scene without lights gets a sun of zero irradiance.
-    let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
-    let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
-    let views = light_views::views(lights, bounds);
-    let largest = light_views::largest_irradiance(lights, bounds);
-    // Without lights, one texel is enough to say so.
-    let side = if part.lights.is_empty() { 1 } else { map_side(part, paths.cells) };
-    let side = side.min(builder.limits().max_texture_dimension_2d);
-    let mut maps = ReflectiveShadowMaps::new(builder, &views, side, &format!("of {}", part.rung))?;
-    let views = reflective_shadow_map::view_buffer(builder, &views);
-    let lit = Lit { views, maps: maps.layers(), size: maps.size(), lights: lighting.lights(builder) };
+    let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, paths.cells)?;
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
     for (constants, objects) in part.variants(|drawn| drawn.decisions.constants()) {
@@ -114,7 +95,7 @@ pub(super) fn pass(
 }
 
 /// Rejects a body through which no light can be followed.
-fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
+pub(super) fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
     let Object { name, material, mesh, .. } = object;
     if material.medium.is_none() {
         return Err(RenderError::NoMedium { object: name.clone(), material: material.name.clone(), rung });
@@ -124,20 +105,6 @@ fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
         return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
     }
     Ok(())
-}
-
-/// Returns the side in texels of the lights' maps, which show all bodies: large enough that the
-/// smallest body's voxels are seen.
-fn map_side(part: &Part<'_>, cells: u32) -> u32 {
-    let widest = 2.0 / 3f32.sqrt() * part.bounds().radius();
-    let extent = |drawn: &Drawn<'_>| {
-        let bounds = Bounds::of(drawn.object.mesh.positions.iter().copied());
-        (bounds.max - bounds.min).max_element()
-    };
-    let extents = part.objects.iter().map(extent);
-    let least = extents.filter(|extent| *extent > 0.0).fold(widest, f32::min);
-    let side = TEXELS_PER_VOXEL * cells;
-    if least < widest { (side as f32 * (widest / least)).min(MOST_TEXELS.max(side) as f32) as u32 } else { side }
 }
 
 /// Inputs for adding a body, besides the body itself.

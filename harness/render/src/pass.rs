@@ -1,6 +1,7 @@
 //! A scene in a frame: its objects under compiled recipes, and the passes that draw them.
 
-use super::diffusion::Diffusion;
+use super::blur::Blur;
+use super::diffusion::Diffusions;
 use super::optical_path::{OpticalPaths, Stage};
 use super::shadows::Shadows;
 use crate::frame::{BindGroupId, Bound, Builder, Depth, Draw, Pass, PipelineId, RenderPass, Target};
@@ -49,9 +50,11 @@ pub(super) enum Before {
     /// The lights' views of the scene, for shadows.
     Shadows(Shadows),
     /// Irradiance, drawn into an object's texture and blurred.
-    Diffusion(Diffusion),
+    Blur(Blur),
     /// Paths of light through the objects.
     Paths(OpticalPaths),
+    /// Diffusion of light through the objects.
+    Diffusions(Diffusions),
 }
 
 /// Attachments that a pass draws to.
@@ -76,8 +79,9 @@ impl ScenePass {
         for before in &self.before {
             match before {
                 Before::Shadows(shadows) => shadows.encode(builder),
-                Before::Diffusion(diffusion) => diffusion.encode(builder),
+                Before::Blur(blur) => blur.encode(builder),
                 Before::Paths(paths) => stages = Some(paths.encode(builder)),
+                Before::Diffusions(diffusions) => stages = Some(diffusions.encode(builder)),
             }
         }
         stages
@@ -87,8 +91,15 @@ impl ScenePass {
     pub(super) fn paths(&self) -> impl Iterator<Item = &OpticalPaths> {
         self.before.iter().filter_map(|before| match before {
             Before::Paths(paths) => Some(paths),
-            Before::Shadows(_) | Before::Diffusion(_) => None,
+            Before::Shadows(_) | Before::Blur(_) | Before::Diffusions(_) => None,
         })
+    }
+
+    /// Diffusion of light, of each rung by it.
+    pub(super) fn diffusions(&self) -> impl Iterator<Item = &Diffusions> {
+        self.before
+            .iter()
+            .filter_map(|before| if let Before::Diffusions(diffusions) = before { Some(diffusions) } else { None })
     }
 
     /// Draws the objects of some variants as seen from an eye, in a pass of this name: one draw call

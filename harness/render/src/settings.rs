@@ -45,6 +45,8 @@ pub struct Settings {
     pub diffuse: DiffuseOptions,
     /// Options for scattering bodies that transmit light.
     pub optical_path: OpticalPathOptions,
+    /// Options for bodies through which light diffuses.
+    pub diffusion: DiffusionOptions,
     /// Options for the reference of clear stones.
     pub reference: ReferenceOptions,
     /// Options for the reference of scattering bodies.
@@ -118,6 +120,21 @@ impl Default for DiffuseOptions {
     }
 }
 
+/// Options of the recipe `diffusion_solve`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DiffusionOptions {
+    /// Number of multigrid cycles of a frame.
+    pub cycles: u32,
+    /// Whether a frame begins with the fluence of the one before, instead of with none.
+    pub warm: bool,
+}
+
+impl Default for DiffusionOptions {
+    fn default() -> Self {
+        Self { cycles: 4, warm: false }
+    }
+}
+
 /// Options of the recipe `optical_path_shading`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpticalPathOptions {
@@ -183,6 +200,7 @@ impl Settings {
             gem: GemOptions::default(),
             diffuse: DiffuseOptions::default(),
             optical_path: OpticalPathOptions::default(),
+            diffusion: DiffusionOptions::default(),
             reference: ReferenceOptions::default(),
             walks: WalkOptions::default(),
         }

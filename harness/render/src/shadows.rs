@@ -33,7 +33,7 @@ impl Shadows {
         if !all().any(|(_, drawn)| drawn.decisions.has(Effect::Shadow)) {
             return Ok(None);
         }
-        let casts = |rung: &Rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_));
+        let casts = |rung: &Rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_) | Rung::Diffusion(_));
         let casting = || all().filter(|(rung, _)| casts(rung)).map(|(_, drawn)| drawn);
         let bounds = Bounds::of(casting().flat_map(|drawn| drawn.object.mesh.positions.iter().copied()));
         let views = light_views::views(lights, bounds);

@@ -39,7 +39,7 @@ pub struct FrameTime {
 
 impl<'gpu> FrameTimer<'gpu> {
     /// Texels along each side of the textures of rung `blur`.
-    pub const BLUR_SIDE: u32 = super::diffusion::SIDE;
+    pub const BLUR_SIDE: u32 = super::blur::SIDE;
 
     /// Compiles the rung, or another text of its recipe, and uploads the scene. If `displayed`, the
     /// tone curve and the encoding for a screen are included.
@@ -113,7 +113,9 @@ impl<'gpu> FrameTimer<'gpu> {
 
     /// Returns the bytes allocated for following light paths, uniforms excluded.
     pub fn path_bytes(&self) -> u64 {
-        self.pass.paths().map(|paths| paths.bytes(self.executor.frame())).sum()
+        let frame = self.executor.frame();
+        let paths: u64 = self.pass.paths().map(|paths| paths.bytes(frame)).sum();
+        paths + self.pass.diffusions().map(|diffusions| diffusions.bytes(frame)).sum::<u64>()
     }
 
     /// Returns the number of draw calls that the scene takes.

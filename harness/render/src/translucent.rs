@@ -1,7 +1,7 @@
 //! The pass of the recipe `cdrf_shading`: scattering and opaque materials under the scene's lights
 //! and the environment.
 
-use super::diffusion::Diffusion;
+use super::blur::Blur;
 use super::lighting::Lighting;
 use super::mesh_buffers::vertices as mesh_vertices;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
@@ -48,7 +48,7 @@ pub(super) fn pass(
                 .of_object(&drawn.name, |builder| add(builder, pipeline, drawn, reflectance, (light, &constants)));
             let (body, diffusion) = added?;
             bodies.push(body);
-            pass.before.extend(diffusion.map(Before::Diffusion));
+            pass.before.extend(diffusion.map(Before::Blur));
         }
         let shared = shared(builder, light, pipeline)?;
         pass.variants.push(Variant { shared, targets: 1, reads_screen: false, pipeline, bodies });
@@ -105,7 +105,7 @@ fn add(
     Drawn { object, name, .. }: &Drawn<'_>,
     reflectance: Reflectance,
     (light, constants): (Light<'_>, &[(&str, f64)]),
-) -> Result<(Body, Option<Diffusion>), RenderError> {
+) -> Result<(Body, Option<Blur>), RenderError> {
     let Object { mesh, material, .. } = object;
     let curvatures = if builder.binds(pipeline, 1, 7) { vertex_curvatures(mesh) } else { Vec::new() };
     let parts: [(u32, &str, &[u8]); 5] = [
@@ -147,7 +147,7 @@ fn add(
     let mut diffusion = None;
     let of = |wanted: u32| buffers.iter().find(|(binding, _)| *binding == wanted).map(|(_, buffer)| *buffer);
     if let (true, Some(positions), Some(normals), Some(uvs)) = (blurs, of(1), of(3), of(8)) {
-        let made = Diffusion::new(builder, (object, name), (light, constants), [positions, normals, uvs])?;
+        let made = Blur::new(builder, (object, name), (light, constants), [positions, normals, uvs])?;
         resources.push((9, made.diffused().into()));
         diffusion = Some(made);
     }

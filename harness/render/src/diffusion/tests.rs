@@ -1,138 +1,208 @@
-use super::super::lighting::Lighting;
-use super::super::pass::Before;
+use super::cells::Cells;
+use super::levels::Levels;
 use super::*;
-use crate::Settings;
-use crate::drawing::scene_pass;
-use crate::frame::Executor;
-use glam::{Vec2, Vec3};
-use lapidary_assay::extremum::larger;
-use lapidary_assets::atlas;
+use crate::settings::DiffusionOptions;
+use glam::{DQuat, DVec3};
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_plan::{Effect, Effects, Rung};
-use lapidary_scene::solver::Reflectance;
-use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Light, Mesh, Scene};
-use std::collections::HashMap;
+use lapidary_scene::surfaces::{rounded_box, sphere};
+use lapidary_scene::{Medium, Mesh};
 
-type Half = exr::prelude::f16;
-
-/// Values at the vertices of each position, by the position's bits.
-type ByPosition = HashMap<[u32; 3], Vec<f32>>;
-
-/// Width coefficient of the Gaussian, as a fraction of the sphere's radius.
-const SIGMA0: f32 = 1.0 / 6.0;
-
-/// Returns a sphere of radius 1, cut into charts.
-fn charted(halo: f32) -> Mesh {
-    atlas::unwrap(&Mesh { uvs: Vec::new(), ..sphere(1.0, 128) }, halo)
+fn gpu() -> &'static Gpu {
+    Gpu::shared(&AdapterChoice::from_environment()).expect("a device")
 }
 
-/// Returns the values that shading reads from the texture at the vertices of `mesh`, in white light
-/// from `toward`.
-fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
-    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-    let mut scene = Scene::named("skin").expect("built in");
-    scene.objects.truncate(1);
-    scene.objects[0].mesh = mesh.clone();
-    scene.objects[0].material.sigma0 = Some(Vec3::splat(SIGMA0));
-    scene.lights = vec![Light::Directional { toward, irradiance: Vec3::ONE }];
-    let rung = Rung::Diffuse(Reflectance::Blur);
-    let settings = Settings { rung, without: Effects::of(&[Effect::Environment]), ..Settings::of_size(8, 8) };
-    let mut builder = Builder::new(Some(gpu));
-    let lighting = Lighting::new(&scene, &settings, [settings.width, settings.height]);
-    let pass = scene_pass(&mut builder, &lighting, &scene, &settings, None).expect("the recipe");
-    pass.prepare(&mut builder);
-    let Before::Diffusion(diffusion) = &pass.before[0] else { panic!("a diffusion") };
-    builder.read_whole("diffused", diffusion.textures.diffused);
-    let red = |texel: &[u8]| Half::from_bits(u16::from_le_bytes([texel[0], texel[1]])).to_f32();
-    let mut texels: Vec<f32> = Vec::new();
-    let executor = Executor::new(gpu, builder.finish()).expect("made");
-    executor.run(|_, bytes| texels.extend(bytes.chunks_exact(8).map(red))).expect("run");
-    // Bilinear filtering of a repeating texture.
-    let at = |place: Vec2| {
-        let place = place.as_ivec2().rem_euclid(glam::IVec2::splat(SIDE as i32));
-        texels[(place.y * SIDE as i32 + place.x) as usize]
-    };
-    let sample = |uv: &Vec2| {
-        let place = uv * SIDE as f32 - 0.5;
-        let (corner, share) = (place.floor(), place - place.floor());
-        let row = |y: f32| {
-            let [left, right] = [0.0, 1.0].map(|x| at(corner + Vec2::new(x, y)));
-            left + share.x * (right - left)
-        };
-        row(0.0) + share.y * (row(1.0) - row(0.0))
-    };
-    mesh.uvs.iter().map(sample).collect()
+/// A body's equations, with a right side of one's own.
+struct Lone {
+    executor: Executor<'static>,
+    grid: VoxelGrid,
+    faces: Buffer,
+    reactions: Buffer,
+    nodes: Buffer,
+    right: Buffer,
+    fluence: Buffer,
 }
 
-/// Groups the values by position, without the vertices that belong only to halos.
-fn by_position(mesh: &Mesh, values: &[f32]) -> ByPosition {
-    let mut found = ByPosition::new();
-    let mut seen = vec![false; mesh.positions.len()];
-    for &vertex in &mesh.indices {
-        if !std::mem::replace(&mut seen[vertex as usize], true) {
-            let position = mesh.positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
-            found.entry(position).or_default().push(values[vertex as usize]);
-        }
+impl Lone {
+    /// Sets up a body of grey matter, of this extinction and share of absorption.
+    fn of(mesh: Mesh, cells: u32, (extinction, absorbed): (f32, f32), cycles: u32) -> Self {
+        let medium = Medium::isotropic(Vec3::splat(extinction * (1.0 - absorbed)), Vec3::splat(extinction * absorbed));
+        let material = Material { medium: Some(medium), ..Material::standard() };
+        let object = Object::new("body", mesh, material);
+        let mut builder = Builder::new(Some(gpu()));
+        let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), cells);
+        let matter = Matter::of(&object.material, grid);
+        let mesh = MeshBuffers::of(&mut builder, &object).expect("buffers");
+        let bits = Cells::matter(&mut builder, grid);
+        let of_body = (matter, &object.material);
+        let cells =
+            Cells::new(&mut builder, grid, (&object.mesh, &mesh), &[("EFFECT_SURFACE", 0.0)], of_body, (bits, None));
+        let cells = cells.expect("the recipe");
+        let options = DiffusionOptions { cycles, warm: false };
+        let levels = Levels::new(&mut builder, grid, &cells, options).expect("the recipe");
+        cells.encode_voxels(&mut builder);
+        cells.encode(&mut builder);
+        levels.encode(&mut builder);
+        let (faces, reactions, nodes) = (cells.faces, cells.reactions, cells.nodes);
+        let (right, fluence) = (levels.right(), levels.fluence());
+        let executor = Executor::new(gpu(), builder.finish()).expect("made");
+        // Once, for the volumes.
+        executor.run(|_, _| {}).expect("run");
+        Self { executor, grid, faces, reactions, nodes, right, fluence }
     }
-    found
-}
 
-/// Returns the largest differences of `mesh`'s values in three lights: first between two charts at
-/// the same point of their border, then from `unrolled` up to 30° from the equator. `unrolled` is
-/// the same sphere parametrised by longitude and latitude, with a repeating texture.
-fn differences(mesh: &Mesh, unrolled: &[(Vec3, ByPosition)]) -> [f32; 2] {
-    let mut most = [0.0f32; 2];
-    for (toward, wanted) in unrolled {
-        for (position, values) in by_position(mesh, &looked_up(mesh, *toward)) {
-            for value in &values {
-                most[0] = values.iter().map(|other| value - other).fold(most[0], larger);
-                if f32::from_bits(position[1]).abs() < 0.5 {
-                    most[1] = larger(most[1], (value - wanted[&position][0]).abs());
+    fn floats(&self, buffer: Buffer) -> Vec<f64> {
+        self.executor.words(buffer).expect("read").into_iter().map(|word| f64::from(f32::from_bits(word))).collect()
+    }
+
+    /// Filled volume of each voxel, as a share of it.
+    fn volumes(&self) -> Vec<f64> {
+        self.floats(self.reactions).chunks_exact(4).map(|of| of[3]).collect()
+    }
+
+    /// Returns each node's position.
+    fn places(&self) -> Vec<DVec3> {
+        let words = self.executor.words(self.nodes).expect("read");
+        let place = |(index, word): (usize, u32)| {
+            let parts: Vec<u32> = (0..8).filter(|part| word >> part & 1 == 1).collect();
+            let sum: DVec3 = parts
+                .iter()
+                .map(|part| {
+                    DVec3::new(f64::from(part & 1), f64::from(part >> 1 & 1), f64::from(part >> 2)) * 0.5 - 0.25
+                })
+                .sum();
+            let centroid = sum / parts.len().max(1) as f64;
+            self.grid.centre(self.grid.voxel(index)).as_dvec3() + f64::from(self.grid.spacing) * centroid
+        };
+        words.into_iter().enumerate().map(place).collect()
+    }
+
+    /// Solves for a grey right side, one number for each voxel.
+    fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let spread: Vec<f32> = right.iter().flat_map(|value| [*value as f32; 3]).collect();
+        self.executor.write_buffer(self.right, bytemuck::cast_slice(&spread)).expect("written");
+        self.executor.run(|_, _| {}).expect("run");
+        self.floats(self.fluence).chunks_exact(3).map(|of| of[0]).collect()
+    }
+
+    /// Returns what is left of the equations, over the right side, both as root mean squares; and the
+    /// share of what is put in that neither leaves nor is absorbed.
+    fn residual(&self, right: &[f64], fluence: &[f64]) -> (f64, f64) {
+        let (faces, reactions) = (self.floats(self.faces), self.floats(self.reactions));
+        let cells = self.grid.cells as usize;
+        let mut left = right.to_vec();
+        let mut lost = 0.0;
+        for (index, voxel) in (0..right.len()).map(|index| (index, self.grid.voxel(index).to_array())) {
+            left[index] -= reactions[4 * index] * fluence[index];
+            lost += reactions[4 * index] * fluence[index];
+            for (axis, stride) in [1, cells, cells * cells].into_iter().enumerate() {
+                if voxel[axis] + 1 < self.grid.cells {
+                    let flow = faces[3 * index + axis] * (fluence[index + stride] - fluence[index]);
+                    left[index] += flow;
+                    left[index + stride] -= flow;
                 }
             }
         }
-    }
-    most
-}
-
-/// The remaining difference is the cost of drawing along an axis: the stretch is not constant
-/// within the reach of a Gaussian.
-#[test]
-fn halos_close_the_borders_of_charts() {
-    let unrolled = sphere(1.0, 128);
-    let lights = [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.48, 0.6, 0.64)];
-    let unrolled = lights.map(|toward| (toward, by_position(&unrolled, &looked_up(&unrolled, toward))));
-    let [without, narrow, wide] = [0.0, 1.0, 3.0].map(|reach| differences(&charted(reach * SIGMA0), &unrolled));
-    println!(
-        "at borders, from the unrolled sphere: {without:?} without halos, {narrow:?} of sigma0, {wide:?} of three"
-    );
-    assert!(without[0] > 0.2 && narrow[0] < without[0] / 2.0 && wide[0] < without[0] / 7.0);
-    assert!(without[1] > 0.1 && narrow[1] < without[1] / 2.0 && wide[1] < without[1] / 6.0);
-}
-
-#[test]
-fn constant_light_stays_constant_with_halos() {
-    let mut mesh = charted(2.0 * SIGMA0);
-    mesh.normals.iter_mut().for_each(|normal| *normal = Vec3::Y);
-    let values = looked_up(&mesh, Vec3::Y);
-    assert!(!mesh.halo.is_empty());
-    for (_, values) in by_position(&mesh, &values) {
-        assert!(values.iter().all(|value| *value == 1.0), "{values:?}");
+        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        let put_in: f64 = right.iter().sum();
+        ((square(&left) / square(right)).sqrt(), (1.0 - lost / put_in).abs())
     }
 }
 
-#[test]
-fn boxes_that_touch_are_one() {
-    let chart = |low, high| Chart { low, high };
-    let apart_already = [chart([0, 0], [4, 4]), chart([6, 0], [9, 9])];
-    assert_eq!(apart(apart_already.to_vec()).len(), 2);
-    let chained = vec![chart([0, 0], [4, 4]), chart([8, 0], [12, 4]), chart([4, 2], [8, 9])];
-    assert_eq!(apart(chained), [chart([0, 0], [12, 9])]);
+/// Light that begins alike everywhere in a ball, at a rate of 1 per volume: the closed form, with
+/// Milne's length beyond the surface.
+fn in_ball(radius: f64, distance: f64, (extinction, absorbed): (f64, f64)) -> f64 {
+    let milne = f64::from(lapidary_diffusion::DIFFUSION_MILNE) / extinction;
+    let (r, s) = (radius, distance);
+    if absorbed == 0.0 {
+        return 0.5 * extinction * (r * r - s * s) + milne * extinction * r;
+    }
+    let kappa = extinction * (3.0 * absorbed).sqrt();
+    let (sinh, cosh) = ((kappa * r).sinh(), (kappa * r).cosh());
+    let factor = 1.0 / (sinh / r + milne * (kappa * cosh / r - sinh / (r * r)));
+    let at = if s < 1e-9 { kappa } else { (kappa * s).sinh() / s };
+    (1.0 - factor * at) / (absorbed * extinction)
+}
+
+/// The right side for light that begins at a rate of 1 per volume.
+fn everywhere(lone: &Lone, extinction: f64) -> Vec<f64> {
+    let spacing = f64::from(lone.grid.spacing);
+    lone.volumes().into_iter().map(|volume| 3.0 * extinction * spacing * spacing * volume).collect()
 }
 
 #[test]
-fn a_box_covers_the_texels_that_it_touches() {
-    let found = texels([Vec2::new(0.5 / 1024.0, -1.0), Vec2::new(2.5 / 1024.0, 1.0)]);
-    assert_eq!(found, Chart { low: [0, 0], high: [3, 1024] });
+fn a_ball_that_glows_is_as_bright_as_the_closed_form() {
+    for (extinction, absorbed, cells) in
+        [(10.0, 0.0, 32), (10.0, 0.02, 32), (2.0, 0.0, 32), (40.0, 0.001, 64), (0.05, 0.0, 32), (3.0, 0.01, 40)]
+    {
+        let lone = Lone::of(sphere(1.0, 96), cells, (extinction as f32, absorbed as f32), 8);
+        let right = everywhere(&lone, extinction);
+        let fluence = lone.solve(&right);
+        let (volumes, places) = (lone.volumes(), lone.places());
+        let (mut off, mut all) = (0.0, 0.0);
+        for ((volume, place), found) in volumes.iter().zip(&places).zip(&fluence) {
+            let expected = in_ball(1.0, place.length().min(1.0), (extinction, absorbed));
+            off += volume * (found - expected).powi(2);
+            all += volume * expected * expected;
+        }
+        let error = (off / all).sqrt();
+        println!("extinction {extinction}, absorbed {absorbed}, {cells} cells: {error:.4}");
+        // Cut cells put the surface within half a voxel.
+        let bound = 0.5 * f64::from(lone.grid.spacing);
+        assert!(error < bound, "extinction {extinction}, absorbed {absorbed}: {error} of {bound}");
+    }
+}
+
+#[test]
+fn what_is_put_in_leaves_or_is_absorbed() {
+    let tilted = rounded_box(DVec3::new(1.0, 0.4, 0.07), 0.02, 3);
+    let turn = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(0.7);
+    for (mesh, matter) in [
+        (sphere(1.0, 64), (8.0, 0.0)),
+        (sphere(1.0, 64), (8.0, 0.1)),
+        (tilted.placed(turn, DVec3::ZERO), (15.0, 0.001)),
+        (tilted.placed(turn, DVec3::ZERO), (200.0, 0.0)),
+    ] {
+        for (cycles, bound, balance) in [(4, 5e-3, 3e-3), (14, 5e-5, 1e-4)] {
+            let lone = Lone::of(mesh.clone(), 48, matter, cycles);
+            let right = everywhere(&lone, matter.0.into());
+            let (residual, unaccounted) = lone.residual(&right, &lone.solve(&right));
+            println!("{matter:?}, {cycles} cycles: residual {residual:.1e}, unaccounted {unaccounted:.1e}");
+            assert!(residual < bound && unaccounted < balance, "{matter:?}, {cycles}: {residual} {unaccounted}");
+        }
+    }
+}
+
+#[test]
+fn light_goes_both_ways_alike_and_never_grows_with_absorption() {
+    let lone = Lone::of(sphere(1.0, 64), 32, (6.0, 0.01), 14);
+    let filled: Vec<usize> =
+        (0..).zip(lone.volumes()).filter(|(_, volume)| *volume > 0.0).map(|(index, _)| index).collect();
+    let at = |share: f64| filled[(share * filled.len() as f64) as usize];
+    let from = |source: usize| {
+        let mut right = vec![0.0; lone.grid.count()];
+        right[source] = 1.0;
+        lone.solve(&right)
+    };
+    for (one, other) in [(at(0.01), at(0.6)), (at(0.3), at(0.99)), (at(0.5), at(0.51))] {
+        let (there, back) = (from(one)[other], from(other)[one]);
+        assert!((there / back - 1.0).abs() < 1e-3 && there > 0.0, "{one}, {other}: {there} {back}");
+    }
+    let darker = Lone::of(sphere(1.0, 64), 32, (6.0, 0.02), 14);
+    // The same light: what begins at a rate of 1.
+    let [clear, dark] = [&lone, &darker].map(|lone| lone.solve(&everywhere(lone, 6.0)));
+    assert!(filled.iter().all(|index| dark[*index] < clear[*index]));
+}
+
+#[test]
+fn islands_and_matter_that_loses_nothing_have_finite_light() {
+    // Two balls, one of which a voxel swallows.
+    let mut mesh = sphere(1.0, 32);
+    mesh.append(&sphere(0.03, 8).placed(DQuat::IDENTITY, 1.5 * DVec3::X));
+    let lone = Lone::of(mesh, 32, (1e-3, 0.0), 8);
+    let fluence = lone.solve(&everywhere(&lone, 1e-3));
+    assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0));
+    let lone = Lone::of(sphere(1.0, 32), 16, (1e6, 0.0), 8);
+    let fluence = lone.solve(&everywhere(&lone, 1e6));
+    assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0));
+    assert!(fluence.iter().any(|value| *value > 0.0));
 }

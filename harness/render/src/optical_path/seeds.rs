@@ -1,7 +1,8 @@
 //! The recipe `optical_path_seed`: clears the costs, then sets those of the voxels around each lit
 //! texel of the lights' maps.
 
-use crate::frame::{Bound, Buffer, Builder, Dispatch, PipelineId, Workgroups};
+use super::super::light_maps::Lit;
+use crate::frame::{Buffer, Builder, Dispatch, PipelineId, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
@@ -15,17 +16,6 @@ const GROUP: u32 = 8;
 pub(super) struct Seeds {
     clear: PipelineId,
     seed: PipelineId,
-}
-
-/// Data of the lights that the seeding looks up.
-#[derive(Clone, Copy)]
-pub(super) struct Lit {
-    pub(super) lights: Buffer,
-    pub(super) views: Buffer,
-    /// The texture with all layers.
-    pub(super) maps: Bound,
-    /// Width, height and number of layers.
-    pub(super) size: [u32; 3],
 }
 
 /// The body and channel to seed.

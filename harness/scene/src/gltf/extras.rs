@@ -83,7 +83,7 @@ impl Lapidary<'_> {
                         sigma0, or remove the solver"
                 .to_owned());
         }
-        if matches!(material.solver, Some(Solver::OpticalPath(_))) && material.medium.is_none() {
+        if matches!(material.solver, Some(Solver::OpticalPath(_) | Solver::Diffusion(_))) && material.medium.is_none() {
             return Err("its extras.lapidary has a solver of optical paths, but no scattering and absorption to follow light by; give \
                         them, or another solver"
                 .to_owned());

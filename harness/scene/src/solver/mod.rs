@@ -14,6 +14,11 @@ use std::str::FromStr;
 pub const LEAST_CELLS: u32 = 16;
 /// Number of voxels along an edge of the largest grid.
 pub const MOST_CELLS: u32 = 256;
+/// Number of cells along an edge of the largest grid for diffusion, which is voxelized at twice as
+/// many.
+pub const MOST_DIFFUSION_CELLS: u32 = MOST_CELLS / 2;
+/// What the names of rungs by diffusion begin with.
+const DIFFUSION: &str = "diffusion";
 /// The number of voxels along an edge is a multiple of this, because the passes over voxels work in
 /// blocks that divide it along any axis.
 pub const MULTIPLE: u32 = 8;
@@ -46,14 +51,22 @@ pub enum Solver {
     Diffuse(Reflectance),
     /// Cheapest optical paths through the body.
     OpticalPath(Paths),
+    /// Diffusion through the body, with this number of cells along each edge of its grid: a multiple
+    /// of [`MULTIPLE`] from [`LEAST_CELLS`] to [`MOST_DIFFUSION_CELLS`].
+    Diffusion(u32),
 }
 
 /// Why a text names no solver.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSolver {
-    /// A solver of optical paths with an invalid grid size.
-    #[error("`{0}` cells; a grid has a multiple of {MULTIPLE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")]
-    Cells(String),
+    /// A solver on a grid of an invalid size.
+    #[error("`{cells}` cells; a grid has a multiple of {MULTIPLE} from {LEAST_CELLS} to {most} along each edge")]
+    Cells {
+        /// The size that was given.
+        cells: String,
+        /// The largest size.
+        most: u32,
+    },
     /// Not a solver's name.
     #[error("no such solver")]
     Unknown,
@@ -64,6 +77,7 @@ impl fmt::Display for Solver {
         match self {
             Self::Diffuse(reflectance) => f.write_str(reflectance.name()),
             Self::OpticalPath(Paths { cells, method }) => write!(f, "{method}-{cells}"),
+            Self::Diffusion(cells) => write!(f, "{DIFFUSION}-{cells}"),
         }
     }
 }
@@ -76,10 +90,16 @@ impl FromStr for Solver {
             return Ok(Self::Diffuse(*reflectance));
         }
         let (method, cells) = text.rsplit_once('-').ok_or(NoSolver::Unknown)?;
+        let grid = |most: u32| {
+            let is_grid = |cells: &u32| (LEAST_CELLS..=most).contains(cells) && cells.is_multiple_of(MULTIPLE);
+            let is_number = cells.bytes().all(|byte| byte.is_ascii_digit());
+            let number = cells.parse().ok().filter(|_| is_number).filter(is_grid);
+            number.ok_or_else(|| NoSolver::Cells { cells: cells.to_owned(), most })
+        };
+        if method == DIFFUSION {
+            return Ok(Self::Diffusion(grid(MOST_DIFFUSION_CELLS)?));
+        }
         let method: Method = method.parse().map_err(|_| NoSolver::Unknown)?;
-        let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(MULTIPLE);
-        let is_number = cells.bytes().all(|byte| byte.is_ascii_digit());
-        let number = cells.parse().ok().filter(|_| is_number).filter(is_grid);
-        Ok(Self::OpticalPath(Paths { cells: number.ok_or_else(|| NoSolver::Cells(cells.to_owned()))?, method }))
+        Ok(Self::OpticalPath(Paths { cells: grid(MOST_CELLS)?, method }))
     }
 }

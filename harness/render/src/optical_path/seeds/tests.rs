@@ -1,5 +1,6 @@
 use super::*;
 use crate::Settings;
+use crate::frame::Bound;
 use crate::frame::{Contents, Executor};
 use crate::light_views::{self, LightView};
 use crate::lighting::Lighting;

@@ -1,6 +1,6 @@
 //! The recipe `optical_path_density`: the density of a body at each voxel.
 
-use super::super::RenderError;
+use super::RenderError;
 use crate::frame::{Bound, Buffer, Builder, Contents, Dispatch, Frame, Texture, Workgroups};
 use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;

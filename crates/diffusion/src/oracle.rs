@@ -1,0 +1,305 @@
+//! The oracle in f64. Integrals of transmittance are Gauss quadratures of what they integrate. The
+//! fluence in a half space is the integral of its source with Green's function of Robin's condition. The
+//! local part is the quadrature of what lies between the solution and the grid's straight lines, plus
+//! Chandrasekhar's law less the quadrature of the whole solution; the solution there is the closed form
+//! with `exp_m1`, which the tests compare with Green's function. The extrapolation length is a quadrature
+//! of Fresnel's reflectance. Conductances are sums of resistances.
+
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// The module's constants, repeated so that an error in them does not carry over to the oracle.
+const MILNE: f32 = 0.7104;
+const THINNEST: f32 = 1e-3;
+const LEAST_DEPTH: f32 = 0.05;
+const LEAST_DISTANCE: f32 = 0.25;
+const LEAST_WEIGHT: f32 = 1e-4;
+const GRAZING: f32 = 1e-9;
+
+/// Optical depth at which quadratures end: 3e-20 of the light is left.
+const END: f64 = 45.0;
+
+/// The five Gauss points on [-1, 1] and their weights.
+const GAUSS: [(f64, f64); 5] = [
+    (-0.906179845938664, 0.23692688505618908),
+    (-0.5384693101056831, 0.47862867049936647),
+    (0.0, 128.0 / 225.0),
+    (0.5384693101056831, 0.47862867049936647),
+    (0.906179845938664, 0.23692688505618908),
+];
+
+/// Returns the integral of `f` over [low, high], in equal panels no wider than `panel`.
+fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let count = ((high - low) / panel).ceil().max(1.0);
+    let half = 0.5 * (high - low) / count;
+    (0..count as u32)
+        .map(|index| {
+            let middle = low + half * (2.0 * f64::from(index) + 1.0);
+            half * GAUSS.iter().map(|(at, weight)| weight * f(middle + half * at)).sum::<f64>()
+        })
+        .sum()
+}
+
+/// Returns the integral of `f` over [0, high], in panels that begin with the width `scale` and double up to
+/// a width of 1.
+fn graded(high: f64, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut at, mut width, mut sum) = (0.0, scale, 0.0);
+    while at < high {
+        width = f64::min(width, 1.0);
+        let next = f64::min(at + width, high);
+        sum += integral(at, next, 1.0, &f);
+        at = next;
+        width *= 2.0;
+    }
+    sum
+}
+
+fn milne_length() -> f64 {
+    f64::from(MILNE)
+}
+
+/// Returns Fresnel's reflectance from inside.
+fn reflected(cosine: f64, index: f64) -> f64 {
+    let radicand = 1.0 - index * index * (1.0 - cosine) * (1.0 + cosine);
+    if radicand <= 0.0 {
+        return 1.0;
+    }
+    let outside = radicand.sqrt();
+    let s = (index * cosine - outside) / (index * cosine + outside);
+    let p = (cosine - index * outside) / (cosine + index * outside);
+    0.5 * (s * s + p * p)
+}
+
+/// Integrates Fresnel's reflectance, with the square of a variable from the critical angle on.
+pub fn milne(relative_index: f64) -> f64 {
+    let index = relative_index.clamp(1.0, 2.5);
+    if index == 1.0 {
+        return milne_length();
+    }
+    let critical = ((index - 1.0) * (index + 1.0)).sqrt() / index;
+    let mean = |power: i32| {
+        let weighted = |u: f64| {
+            let m = critical + (1.0 - critical) * u * u;
+            2.0 * u * (1.0 - critical) * reflected(m, index) * f64::from(power) * m.powi(power - 1)
+        };
+        critical.powi(power) + integral(0.0, 1.0, 1.0 / 32.0, weighted)
+    };
+    milne_length() * (1.0 + mean(3)) / (1.0 - mean(2))
+}
+
+/// Adds the resistances of two halves.
+pub fn face(open: f64, distance: f64, densities: DVec2) -> f64 {
+    let half = 0.5 * distance.max(f64::from(LEAST_DISTANCE));
+    let resistance = |density: f64| half * density.max(f64::from(THINNEST));
+    open / (resistance(densities.x) + resistance(densities.y))
+}
+
+/// Returns [`face`]: the naive form is the same function, computed badly.
+pub fn face_naive(open: f64, distance: f64, densities: DVec2) -> f64 {
+    face(open, distance, densities)
+}
+
+/// Adds the resistances of the matter and of the extrapolation length.
+pub fn surface(area: f64, depth: f64, density: f64, milne: f64) -> f64 {
+    if area == 0.0 {
+        return 0.0;
+    }
+    let matter = density.max(f64::from(THINNEST)) * depth.max(f64::from(LEAST_DEPTH)) / area;
+    (matter + milne / area).recip()
+}
+
+/// Returns [`surface`]: the naive form is the same function, computed badly.
+pub fn surface_naive(area: f64, depth: f64, density: f64, milne: f64) -> f64 {
+    surface(area, depth, density, milne)
+}
+
+/// Subtracts the share by which the profile has fallen below the node's.
+pub fn profile(depth: f64, node_depth: f64, milne: f64) -> f64 {
+    let missing = node_depth - depth.max(0.0);
+    if missing <= 0.0 {
+        return 1.0;
+    }
+    let whole = node_depth + milne;
+    // Near 0 the difference would leave no digits.
+    if missing > 0.5 * whole { (depth.max(0.0) + milne) / whole } else { 1.0 - missing / whole }
+}
+
+/// Returns [`profile`]: the naive form is the same function, computed badly.
+pub fn profile_naive(depth: f64, node_depth: f64, milne: f64) -> f64 {
+    profile(depth, node_depth, milne)
+}
+
+/// Divides the two laws, each relative to its value along the normal.
+pub fn angle(cosine: f64, h: f64, h_normal: f64, milne: f64) -> f64 {
+    let straight = (milne + cosine.clamp(0.0, 1.0)) / (milne + 1.0);
+    h / h_normal / straight
+}
+
+/// Returns the integral of `f`(u) e^(-x u) over u in [0, 1].
+fn attenuated(x: f64, f: impl Fn(f64) -> f64) -> f64 {
+    if x <= 1.0 {
+        return integral(0.0, 1.0, 0.5, |u| f(u) * (-x * u).exp());
+    }
+    integral(0.0, x.min(END), 1.0, |s| f(s / x) * (-s).exp()) / x
+}
+
+fn clamped_thickness(thickness: f64) -> f64 {
+    thickness.clamp(0.0, 1e15f32.into())
+}
+
+/// Integrates both weights.
+pub fn ramps(thickness: f64) -> DVec2 {
+    let x = clamped_thickness(thickness);
+    DVec2::new(attenuated(x, |u| 1.0 - u), attenuated(x, |u| u))
+}
+
+/// Integrates the transmittance.
+pub fn mean(near: f64, far: f64) -> f64 {
+    let (a, b) = (clamped_thickness(near), clamped_thickness(far));
+    (-a.min(b)).exp() * attenuated((b - a).abs(), |_| 1.0)
+}
+
+/// Returns [`mean`]: the naive form is the same function, computed badly.
+pub fn mean_naive(near: f64, far: f64) -> f64 {
+    mean(near, far)
+}
+
+/// Integrates the collisions.
+pub fn scattered(depth: f64, thickness: f64) -> f64 {
+    let x = clamped_thickness(thickness);
+    (-depth.max(0.0)).exp() * x * attenuated(x, |_| 1.0)
+}
+
+/// Returns [`scattered`]: the naive form is the same function, computed badly.
+pub fn scattered_naive(depth: f64, thickness: f64) -> f64 {
+    scattered(depth, thickness)
+}
+
+/// Integrates the straight line.
+pub fn segment(start: f64, end: f64, thickness: f64) -> f64 {
+    let x = clamped_thickness(thickness);
+    x * attenuated(x, |u| start * (1.0 - u) + end * u)
+}
+
+/// Returns [`segment`]: the naive form is the same function, computed badly.
+pub fn segment_naive(start: f64, end: f64, thickness: f64) -> f64 {
+    segment(start, end, thickness)
+}
+
+/// Integrates from the end with less matter before it.
+pub fn unscattered(thickness: f64, near: f64, far: f64) -> f64 {
+    let x = thickness.clamp(0.0, 1e6);
+    let (first, last) = (near.clamp(0.0, 87.0), x + far.clamp(0.0, 87.0));
+    (-first.min(last)).exp() * x * attenuated((last - first).abs(), |_| 1.0)
+}
+
+/// Returns [`unscattered`]: the naive form is the same function, computed badly.
+pub fn unscattered_naive(thickness: f64, near: f64, far: f64) -> f64 {
+    unscattered(thickness, near, far)
+}
+
+fn clamped_cosine(cosine: f64) -> f64 {
+    cosine.clamp(f64::from(GRAZING), 1.0)
+}
+
+/// Returns (1 - e^-x) / x.
+fn gradual(x: f64) -> f64 {
+    if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
+}
+
+/// Integrates the source with Green's function. With a zero at the distance z outside of the surface it is
+/// e^(-κ max) (sinh(κ min) / κ + z cosh(κ min)) / (1 + κ z) of the two depths.
+pub fn fluence(depth: f64, cosine_light: f64, gamma: f64) -> f64 {
+    let (t, c, g) = (depth.clamp(0.0, 1e6), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
+    let (z, kappa) = (milne_length(), 3f64.sqrt() * g);
+    let product = kappa * c;
+    if t * kappa.min(c.recip()) > 80.0 {
+        return 0.0;
+    }
+    let inner =
+        |s: f64| (s * gradual(2.0 * kappa * s) + 0.5 * z * (1.0 + (-2.0 * kappa * s).exp())) / (1.0 + kappa * z);
+    // Sources above the depth, in mean free paths along the light; then those below, which decay alike.
+    let last = if product < 1.0 { f64::min(t / c, 2.0 * END / (1.0 - product)) } else { t / c };
+    let above = integral(0.0, last, 1.0, |v| inner(c * v) * (-kappa * (t - c * v) - v).exp());
+    let below = inner(t) * (-t / c).exp() / (1.0 + product);
+    3.0 * (1.0 - g) * (1.0 + g) * c * (above + below)
+}
+
+/// Returns the same in closed form, for quadratures; the arguments are not clamped.
+pub(crate) fn emission(t: f64, c: f64, g: f64) -> f64 {
+    let (z, kappa) = (milne_length(), 3f64.sqrt() * g);
+    let surface = z / (1.0 + kappa * z) * (-kappa * t).exp();
+    let rise = t * (-(kappa * t).min(t / c)).exp() * gradual((t / c - kappa * t).abs());
+    3.0 * (1.0 - g) * (1.0 + g) * c / (1.0 + kappa * c) * (surface + rise)
+}
+
+/// Returns [`fluence`]: the naive form is the same function, computed badly.
+pub fn fluence_naive(depth: f64, cosine_light: f64, gamma: f64) -> f64 {
+    fluence(depth, cosine_light, gamma)
+}
+
+/// Integrates the fluence along the ray.
+pub fn tail(depth: f64, cosine_eye: f64, cosine_light: f64, gamma: f64) -> f64 {
+    let (t, g) = (depth.clamp(0.0, 1e6), gamma.clamp(0.0, 1.0));
+    let (m, c) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light));
+    if t / m > 700.0 {
+        return 0.0;
+    }
+    (-t / m).exp() * graded(END, c / m, |v| emission(t + m * v, c, g) * (-v).exp())
+}
+
+/// Integrates what lies above the straight lines, and adds the exact law less diffusion's.
+pub fn local(cosine_eye: f64, cosine_light: f64, h_eye: f64, h_light: f64, gamma: f64, depth: f64, gap: f64) -> f64 {
+    let (m, c, g) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
+    let (node, gap, z) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6), milne_length());
+    let of = |t: f64| emission(t, c, g);
+    let (first, second, scale) = (of(node), of(node + gap), c / m);
+    let above = graded(f64::min(node / m, END), scale, |v| {
+        let t = m * v;
+        (of(t) - first * (t + z) / (node + z)) * (-v).exp()
+    });
+    let below = if gap > 0.0 && node / m < END {
+        let bubble = graded(f64::min(gap / m, END), scale, |v| {
+            let t = m * v;
+            (of(node + t) - first - (second - first) * t / gap) * (-v).exp()
+        });
+        (-node / m).exp() * bubble
+    } else {
+        0.0
+    };
+    let exact = c / (m + c) * (h_eye.clamp(1.0, 3.0) * h_light.clamp(1.0, 3.0) - 1.0);
+    let law = exact - graded(END, scale, |v| of(m * v) * (-v).exp());
+    (1.0 - g) * (1.0 + g) / (4.0 * PI) * (above + below + law)
+}
+
+/// Returns [`local`]: the naive form is the same function, computed badly.
+pub fn local_naive(
+    cosine_eye: f64,
+    cosine_light: f64,
+    h_eye: f64,
+    h_light: f64,
+    gamma: f64,
+    depth: f64,
+    gap: f64,
+) -> f64 {
+    local(cosine_eye, cosine_light, h_eye, h_light, gamma, depth, gap)
+}
+
+/// Multiplies the distances from the opposite corner.
+pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
+    let inside = fraction.clamp(DVec3::ZERO, DVec3::ONE).to_array();
+    let along = |(axis, at): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - at } else { at };
+    let trilinear: f64 = inside.into_iter().enumerate().map(along).product();
+    volume * trilinear + volume * f64::from(LEAST_WEIGHT)
+}
+
+/// Adds the shares of load and inflow.
+pub fn relax(load: f64, inflow: f64, conductances: f64, reaction: f64) -> f64 {
+    let divisor = conductances + reaction;
+    if divisor <= 0.0 { 0.0 } else { load / divisor + inflow / divisor }
+}
+
+/// Returns [`relax`]: the naive form is the same function, computed badly.
+pub fn relax_naive(load: f64, inflow: f64, conductances: f64, reaction: f64) -> f64 {
+    relax(load, inflow, conductances, reaction)
+}

@@ -1,0 +1,88 @@
+//! Checks the closed form of the fluence against Green's function, the local part against a grid that
+//! shows the rest, and the extrapolation length against known values.
+
+use super::*;
+use lapidary_assay::extremum::larger;
+use std::f64::consts::PI;
+
+const GAMMAS: [f64; 7] = [0.0, 0.01, 0.1, 0.3, 0.577_350_269, 0.7, 0.95];
+
+#[test]
+fn the_closed_form_of_the_fluence_is_green_s_function() {
+    for gamma in GAMMAS {
+        for cosine in [1e-3, 0.2, 0.6, 1.0] {
+            for depth in [0.0, 1e-3, 0.3, 2.0, 20.0] {
+                let (green, closed) = (oracle::fluence(depth, cosine, gamma), oracle::emission(depth, cosine, gamma));
+                assert!((green - closed).abs() < 1e-8 * closed, "{depth} {cosine} {gamma}: {green} {closed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_fluence_solves_its_equation() {
+    let step = 1e-3;
+    for gamma in GAMMAS {
+        for cosine in [0.2, 0.6, 1.0] {
+            let f = |depth: f64| oracle::emission(depth, cosine, gamma);
+            let slope = (4.0 * f(step) - 3.0 * f(0.0) - f(2.0 * step)) / (2.0 * step);
+            let milne = f64::from(DIFFUSION_MILNE);
+            assert!((f(0.0) - milne * slope).abs() < 1e-3, "Robin's condition: {gamma} {cosine}");
+            let depth: f64 = 0.8;
+            let bend = (f(depth + step) + f(depth - step) - 2.0 * f(depth)) / (step * step);
+            let source = 3.0 * (1.0 - gamma * gamma) * (-depth / cosine).exp();
+            assert!((bend - 3.0 * gamma * gamma * f(depth) + source).abs() < 1e-4, "{gamma} {cosine}");
+        }
+    }
+}
+
+#[test]
+fn grid_and_local_part_make_the_exact_law() {
+    // Any values will do for H: the law is what they make of it.
+    let (h_eye, h_light) = (1.7f32, 2.1);
+    for gamma in [0.0f32, 0.1, 0.577_35, 0.9] {
+        for (eye, light) in [(0.2f32, 1.0f32), (1.0, 0.2), (0.7, 0.6)] {
+            for (depth, gap) in [(0.1f32, 0.5f32), (0.5, 1.0), (2.0, 0.25), (4.0, 8.0)] {
+                let (first, second) = (fluence(depth, light, gamma), fluence(depth + gap, light, gamma));
+                // Robin's profile, by its definition at the surface.
+                let surface = first * profile(0.0, depth, DIFFUSION_MILNE);
+                let mut shown = f64::from(segment(surface, first, depth / eye));
+                shown += f64::from((-depth / eye).exp() * segment(first, second, gap / eye));
+                // Fine segments of the solution from there on.
+                let step = 0.01 * eye;
+                for index in 0..2000u16 {
+                    let at = depth + gap + step * f32::from(index);
+                    let (start, end) = (fluence(at, light, gamma), fluence(at + step, light, gamma));
+                    shown += f64::from((-at / eye).exp() * segment(start, end, step / eye));
+                }
+                let albedo = f64::from(1.0 - gamma * gamma);
+                let part = local(eye, light, h_eye, h_light, gamma, depth, gap);
+                let whole = f64::from(part) + albedo / (4.0 * PI) * shown;
+                let law = f64::from(light / (eye + light) * (h_eye * h_light - 1.0)) * albedo / (4.0 * PI);
+                assert!((whole - law).abs() < 1e-5, "{gamma} {eye} {light} {depth} {gap}: {whole} {law}");
+            }
+        }
+    }
+}
+
+#[test]
+fn known_extrapolation_lengths() {
+    for (index, times) in [(1.1, 1.3504), (1.3, 2.3405), (1.4, 2.9485), (1.5, 3.6279), (2.0, 8.1242)] {
+        let exact = oracle::milne(index) / f64::from(DIFFUSION_MILNE);
+        assert!((exact - times).abs() < 1e-4, "{index}: {exact}");
+    }
+    let mut worst: f64 = 0.0;
+    for step in 0..=1500u16 {
+        let index = 1.0 + f32::from(step) / 1000.0;
+        worst = larger(worst, (f64::from(milne(index)) / oracle::milne(index.into()) - 1.0).abs());
+    }
+    assert!((5e-6..1.45e-5).contains(&worst), "{worst:e}");
+}
+
+#[test]
+fn weights_of_corners_add_up() {
+    for at in [Vec3::ZERO, Vec3::ONE, Vec3::new(0.25, 0.5, 0.875)] {
+        let sum: f32 = (0..8).map(|corner| weight(at, corner, 1.0)).sum();
+        assert!((sum - 1.0 - 8.0 * DIFFUSION_LEAST_WEIGHT).abs() < 1e-6, "{at}: {sum}");
+    }
+}

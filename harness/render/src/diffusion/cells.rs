@@ -1,0 +1,117 @@
+//! The recipe `diffusion_cells`: a body as cells, from voxels of half the spacing and from its mesh.
+
+use super::super::mesh_buffers::MeshBuffers;
+use super::{Matter, bytes_of};
+use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
+use crate::record::Record;
+use crate::shader::ShaderError;
+use crate::voxel_grid::VoxelGrid;
+use crate::voxelization::Voxelizer;
+use lapidary_scene::{Material, Mesh};
+
+const RECIPE: &str = "diffusion_cells";
+/// Invocations of a workgroup.
+const GROUP: u32 = 64;
+/// Workgroups that share the large triangles.
+const LARGE_GROUPS: u32 = 32;
+
+/// Pipelines and buffers for a body's cells.
+pub(super) struct Cells {
+    pub(super) voxelizer: Voxelizer,
+    mesh: MeshBuffers,
+    /// Which eighths of each voxel are filled, and the node's depth: a word for each voxel.
+    pub(super) nodes: Buffer,
+    /// Conductances to the next voxels: three f32 for each voxel.
+    pub(super) faces: Buffer,
+    /// Losses in each channel, and the filled volume: four f32 for each voxel.
+    pub(super) reactions: Buffer,
+    large: Buffer,
+    /// Buffers that only this recipe reads.
+    own: Vec<Buffer>,
+    dispatches: Vec<Dispatch>,
+}
+
+impl Cells {
+    /// Creates the buffer of the voxels that hold any matter, one bit for each.
+    pub(super) fn matter(builder: &mut Builder<'_>, grid: VoxelGrid) -> Buffer {
+        let rows = u64::from(grid.cells) * u64::from(grid.cells);
+        builder.buffer("matter of cells", 4 * rows * u64::from(grid.words_per_row()), wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Creates the pipelines and buffers; `constants` are values of the recipe's overrides.
+    pub(super) fn new(
+        builder: &mut Builder<'_>,
+        grid: VoxelGrid,
+        (shape, mesh): (&Mesh, &MeshBuffers),
+        constants: &[(&str, f64)],
+        (matter, material): (Matter, &Material),
+        (bits, density): (Buffer, Option<Buffer>),
+    ) -> Result<Self, ShaderError> {
+        let fine = VoxelGrid { cells: 2 * grid.cells, spacing: 0.5 * grid.spacing, ..grid };
+        let voxelizer = Voxelizer::new(builder, fine, shape, constants)?;
+        let source = lapidary_wgsl::recipe_source(RECIPE);
+        let mut kernel =
+            |entry: &str| builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_{entry}"), constants);
+        let kernels = [kernel("fill")?, kernel("surface")?, kernel("large")?, kernel("finish")?];
+        use wgpu::BufferUsages as Usage;
+        let (voxels, triangles) = (grid.count() as u64, shape.triangle_count() as u64);
+        let mut storage = |what, bytes| builder.buffer(what, bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+        let filled = storage("filled eighths", 4 * voxels);
+        let areas = storage("surface areas", 4 * voxels);
+        let depths = storage("depths of nodes", 4 * voxels);
+        let large = storage("large triangles of cells", 4 + 4 * triangles.max(1));
+        let nodes = storage("nodes", 4 * voxels);
+        let faces = storage("conductances", 12 * voxels);
+        let reactions = storage("losses", 16 * voxels);
+        let absorption = material.medium.as_ref().map_or(glam::Vec3::ZERO, |medium| {
+            3.0 * grid.spacing * grid.spacing * medium.absorption * medium.transport_extinction()
+        });
+        let record = Record::new("DiffusionCells").within("grid", |record| grid.fill(record));
+        let record = builder.uniform("cells", record.with("milne", matter.milne()).with("absorption", absorption));
+        let bound = [
+            record,
+            mesh.positions,
+            mesh.indices,
+            voxelizer.matter,
+            bits,
+            filled,
+            areas,
+            depths,
+            large,
+            density.unwrap_or(nodes),
+            nodes,
+            faces,
+            reactions,
+        ];
+        let resources: Vec<(u32, Bound)> = (0..).zip(bound.map(Bound::from)).collect();
+        let words = grid.words_per_row() * grid.cells * grid.cells;
+        let counts =
+            [words.div_ceil(GROUP), (triangles as u32).div_ceil(GROUP), LARGE_GROUPS, (voxels as u32).div_ceil(GROUP)];
+        let dispatch = |(kernel, count)| {
+            let group = builder.bind(kernel, 0, &resources);
+            builder.dispatch(kernel, vec![group], Workgroups::Count([count, 1, 1]))
+        };
+        let dispatches = kernels.into_iter().zip(counts).map(dispatch).collect();
+        let own = vec![bits, filled, areas, depths, large];
+        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, large, own, dispatches })
+    }
+
+    /// Encodes the voxels, and which cells hold matter.
+    pub(super) fn encode_voxels(&self, builder: &mut Builder<'_>) {
+        self.voxelizer.encode(builder, self.mesh.positions, self.mesh.indices);
+        builder.compute(RECIPE, self.dispatches[..1].to_vec(), 1);
+    }
+
+    /// Encodes the rest, once the densities are known.
+    pub(super) fn encode(&self, builder: &mut Builder<'_>) {
+        // Only the list's length must be reset, not its contents.
+        builder.pass(Pass::Clear { buffer: self.large, bytes: 4 });
+        builder.compute(RECIPE, self.dispatches[1..].to_vec(), 1);
+    }
+
+    /// Size of the buffers in bytes.
+    pub(super) fn bytes(&self, frame: &Frame) -> u64 {
+        let shared = [self.nodes, self.faces, self.reactions];
+        self.voxelizer.bytes(frame) + bytes_of(frame, &shared) + bytes_of(frame, &self.own)
+    }
+}

@@ -1,0 +1,80 @@
+//! The recipe `diffusion_source`: where light is scattered for the first time.
+
+use super::super::light_maps::Lit;
+use super::{Matter, bytes_of};
+use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Workgroups};
+use crate::record::Record;
+use crate::shader::ShaderError;
+use crate::voxel_grid::VoxelGrid;
+use glam::Vec3;
+
+const RECIPE: &str = "diffusion_source";
+/// Invocations of a workgroup along each side of a map.
+const GROUP: u32 = 8;
+/// Workgroups that finish the source.
+const FINISHING: u32 = 1024;
+
+/// Pipelines and buffers for a body's source.
+pub(super) struct Source {
+    loads: Buffer,
+    dispatches: Vec<Dispatch>,
+}
+
+/// Buffers that the recipe reads and writes.
+pub(super) struct Buffers {
+    /// The nodes of the cells.
+    pub(super) nodes: Buffer,
+    /// Voxels of half the spacing.
+    pub(super) fine: Buffer,
+    /// Density of each voxel; `None` if it is uniform.
+    pub(super) density: Option<Buffer>,
+    /// The right side of the equations.
+    pub(super) right: Buffer,
+}
+
+impl Source {
+    /// Creates the pipelines and buffers; `constants` are values of the recipe's overrides.
+    pub(super) fn new(
+        builder: &mut Builder<'_>,
+        grid: VoxelGrid,
+        (lit, largest): (&Lit, Vec3),
+        matter: Matter,
+        buffers: &Buffers,
+        constants: &[(&str, f64)],
+    ) -> Result<Self, ShaderError> {
+        let source = lapidary_wgsl::recipe_source(RECIPE);
+        let mut kernel =
+            |entry: &str| builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_{entry}"), constants);
+        let kernels = [kernel("texel")?, kernel("finish")?];
+        use wgpu::BufferUsages as Usage;
+        let loads = builder.buffer("loads", 12 * grid.count() as u64, Usage::STORAGE | Usage::COPY_DST);
+        let record = Record::new("DiffusionSource").within("grid", |record| grid.fill(record));
+        let record = record.with("extinction", matter.extinction).with("milne", matter.milne());
+        // Shares are relative to the largest irradiance, which must not be 0.
+        let record = record.with("gamma", matter.gamma).with("largest", largest.max(Vec3::splat(f32::MIN_POSITIVE)));
+        let uniform = builder.uniform("source", record);
+        let of_lights = [(0, uniform.into()), (2, lit.lights.into()), (4, lit.views.into()), (5, lit.maps)];
+        let Buffers { nodes, fine, density, right } = *buffers;
+        let mut of_body: Vec<(u32, Bound)> =
+            vec![(0, loads.into()), (1, nodes.into()), (2, fine.into()), (4, right.into())];
+        of_body.extend(density.map(|density| (3, density.into())));
+        let [width, height, layers] = lit.size;
+        let sizes = [[width.div_ceil(GROUP), height.div_ceil(GROUP), layers], [FINISHING, 1, 1]];
+        let dispatch = |(kernel, size)| {
+            let groups = vec![builder.bind(kernel, 0, &of_lights), builder.bind(kernel, 1, &of_body)];
+            builder.dispatch(kernel, groups, Workgroups::Count(size))
+        };
+        Ok(Self { loads, dispatches: kernels.into_iter().zip(sizes).map(dispatch).collect() })
+    }
+
+    /// Encodes the source, once the maps are drawn.
+    pub(super) fn encode(&self, builder: &mut Builder<'_>) {
+        builder.clear(self.loads);
+        builder.compute(RECIPE, self.dispatches.clone(), 1);
+    }
+
+    /// Size of the buffers in bytes.
+    pub(super) fn bytes(&self, frame: &Frame) -> u64 {
+        bytes_of(frame, &[self.loads])
+    }
+}

@@ -1,0 +1,74 @@
+//! The lights' maps of the bodies through which light is followed: what they show, and who reads them.
+
+use super::RenderError;
+use super::light_views;
+use super::lighting::Lighting;
+use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
+use super::variant::{Drawn, Part};
+use crate::frame::{Bound, Buffer, Builder};
+use glam::Vec3;
+use lapidary_scene::{Bounds, Light};
+
+/// Texels along a side of a map for each voxel along an edge of a grid that encloses all bodies:
+/// the sphere around a body is up to 1.7 grids wide.
+const TEXELS_PER_VOXEL: u32 = 4;
+/// Upper limit on a map's side in texels: smaller bodies get larger maps, so that none of their
+/// voxels is missed, up to this side.
+const MOST_TEXELS: u32 = 2048;
+
+/// Data of the lights that passes over the maps' texels look up.
+#[derive(Clone, Copy)]
+pub(super) struct Lit {
+    pub(super) lights: Buffer,
+    pub(super) views: Buffer,
+    /// The texture with all layers.
+    pub(super) maps: Bound,
+    /// Width, height and number of layers.
+    pub(super) size: [u32; 3],
+}
+
+/// The maps of a part's bodies.
+pub(super) struct LightMaps {
+    pub(super) maps: ReflectiveShadowMaps,
+    pub(super) lit: Lit,
+    /// Largest irradiance from any single light, for each channel.
+    pub(super) largest: Vec3,
+}
+
+impl LightMaps {
+    /// Creates the maps for the bodies of a part, whose grids have `cells` along each edge.
+    pub(super) fn of(
+        builder: &mut Builder<'_>,
+        lighting: &Lighting<'_>,
+        part: &Part<'_>,
+        cells: u32,
+    ) -> Result<Self, RenderError> {
+        let bounds = part.bounds();
+        // A scene without lights gets a sun of zero irradiance.
+        let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
+        let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
+        let views = light_views::views(lights, bounds);
+        let largest = light_views::largest_irradiance(lights, bounds);
+        // Without lights, one texel is enough to say so.
+        let side = if part.lights.is_empty() { 1 } else { map_side(part, cells) };
+        let side = side.min(builder.limits().max_texture_dimension_2d);
+        let maps = ReflectiveShadowMaps::new(builder, &views, side, &format!("of {}", part.rung))?;
+        let views = reflective_shadow_map::view_buffer(builder, &views);
+        let lit = Lit { views, maps: maps.layers(), size: maps.size(), lights: lighting.lights(builder) };
+        Ok(Self { maps, lit, largest })
+    }
+}
+
+/// Returns the side in texels of the lights' maps, which show all bodies: large enough that the
+/// smallest body's voxels are seen.
+fn map_side(part: &Part<'_>, cells: u32) -> u32 {
+    let widest = 2.0 / 3f32.sqrt() * part.bounds().radius();
+    let extent = |drawn: &Drawn<'_>| {
+        let bounds = Bounds::of(drawn.object.mesh.positions.iter().copied());
+        (bounds.max - bounds.min).max_element()
+    };
+    let extents = part.objects.iter().map(extent);
+    let least = extents.filter(|extent| *extent > 0.0).fold(widest, f32::min);
+    let side = TEXELS_PER_VOXEL * cells;
+    if least < widest { (side as f32 * (widest / least)).min(MOST_TEXELS.max(side) as f32) as u32 } else { side }
+}

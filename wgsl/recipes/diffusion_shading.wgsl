@@ -1,0 +1,334 @@
+// diffusion_shading: translucent stone: the light that a body scatters towards the eye along its way inside, by the fluence of diffusion, in one draw call.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: own; Chandrasekhar, "Radiative Transfer", 1960, for what a cell cannot resolve.
+// requires: environment, cdrf, diffusion, fresnel, half_space, microfacet, reflective_shadow_map, voxelization
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection, diffusion_nodes, diffusion_packed
+//
+// Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
+// voxelization, diffusion_cells, reflective_shadow_map, diffusion_source and diffusion_solve.
+
+// Light through the body. If off, only light that falls on the surface itself is sent back. Called for
+// by extras.lapidary.scattering and absorption.
+override EFFECT_DIFFUSION: bool = true;
+// The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
+// densities.
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+// Diffuse light from all around, in addition to the lights. It does not travel through the body.
+// Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
+
+// The way inside is cut where its optical depth is 0, .25, .75, 1.5, 2.5, 4 and 6.
+const DIFFUSION_PIECES: u32 = 6u;
+
+struct DiffusionView {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+}
+
+struct DiffusionBody {
+    grid: VoxelizationGrid,
+    // Extinction per voxel spacing where the density is 1, in each channel.
+    extinction: vec3f,
+    // Index of refraction, relative to the medium outside.
+    index: f32,
+    // The root of 1 - albedo, in each channel.
+    gamma: vec3f,
+    // Width of the distribution of microfacet slopes, the square of the roughness; 0 for a polished
+    // surface.
+    alpha: f32,
+    // The irradiance that counts as 1.
+    largest: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> view: DiffusionView;
+// Bindings 1 to 5 belong to the parts.
+@group(1) @binding(0) var<storage, read> body: DiffusionBody;
+// Three floats per vertex.
+@group(1) @binding(1) var<storage, read> positions: array<f32>;
+@group(1) @binding(2) var<storage, read> indices: array<u32>;
+@group(1) @binding(3) var<storage, read> normals: array<f32>;
+@group(1) @binding(4) var<storage, read> packed: array<vec2u>;
+@group(1) @binding(5) var<storage, read> density: array<f32>;
+
+struct DiffusionVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+}
+
+@vertex
+fn diffusion_vertex(@builtin(vertex_index) vertex: u32) -> DiffusionVertex {
+    let index = indices[vertex];
+    let position = mesh_position(index);
+    return DiffusionVertex(view.clip_from_world * vec4f(position, 1.0f), position, mesh_normal(index));
+}
+
+// Chandrasekhar's H function in each channel.
+fn diffusion_h(cosine: f32) -> vec3f {
+    return vec3f(half_space_h(cosine, body.gamma.x), half_space_h(cosine, body.gamma.y), half_space_h(cosine, body.gamma.z));
+}
+
+// What the nodes around a point hold.
+struct DiffusionSample {
+    fluence: vec3f,
+    // Their mean depth in voxel spacings.
+    depth: f32,
+    // Their mean density; 0 where there is no matter about the point.
+    density: f32,
+    // The filled share of the space about the point: about 1/2 at the surface of a thick part.
+    filled: f32,
+}
+
+// The nodes' means around a point, given in voxel spacings from the grid's corner.
+fn diffusion_sample(place: vec3f) -> DiffusionSample {
+    let cells = body.grid.cells;
+    let low = floor(place - 0.5f);
+    let fraction = place - 0.5f - low;
+    var found = DiffusionSample(vec3f(0.0f), 0.0f, 0.0f, 0.0f);
+    for (var corner = 0u; corner < 8u; corner++) {
+        let step = vec3f(f32(corner & 1u), f32((corner >> 1u) & 1u), f32(corner >> 2u));
+        let voxel = vec3u(clamp(low + step, vec3f(0.0f), vec3f(f32(cells - 1u))));
+        let index = voxel.x + cells * (voxel.y + cells * voxel.z);
+        let word = packed[index];
+        let weight = diffusion_weight(fraction, corner, diffusion_packed_volume(word));
+        found.filled += weight;
+        found.fluence += weight * diffusion_packed_fluence(word);
+        found.depth += weight * diffusion_packed_depth(word);
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
+            found.density += weight * density[index];
+        }
+    }
+    let scale = select(0.0f, 1.0f / max(found.filled, 1e-12f), found.filled > 0.0f);
+    if (!EFFECT_EXTINCTION_PER_VOXEL) {
+        found.density = found.filled;
+    }
+    return DiffusionSample(scale * found.fluence, scale * found.depth, scale * found.density, found.filled);
+}
+
+// The fluence at a depth below the surface: between the surface and the nodes it falls linearly, to 0
+// at Milne's length above the surface.
+fn diffusion_below(found: DiffusionSample, depth: f32) -> vec3f {
+    let milne = DIFFUSION_MILNE / (body.extinction * max(found.density, DIFFUSION_THINNEST));
+    return found.fluence * vec3f(
+        diffusion_profile(depth, found.depth, milne.x),
+        diffusion_profile(depth, found.depth, milne.y),
+        diffusion_profile(depth, found.depth, milne.z),
+    );
+}
+
+// The way of the eye inside the body: where it is cut, and the light that is scattered there after it
+// was scattered before.
+struct DiffusionWay {
+    // Positions, and the length of the way up to there in voxel spacings.
+    ends: array<vec4f, 7>,
+    densities: array<f32, 7>,
+    // Radiance towards the eye for an albedo of 4 pi.
+    scattered: vec3f,
+    // Mean depth of the nodes about the first point, in voxel spacings.
+    depth: f32,
+}
+
+fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32) -> DiffusionWay {
+    // The same places for all channels.
+    var depths = array<f32, 7>(0.0f, 0.25f, 0.75f, 1.5f, 2.5f, 4.0f, 6.0f);
+    let least = min(body.extinction.x, min(body.extinction.y, body.extinction.z));
+    let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
+    let extinction = sqrt(least * most);
+    let start = voxelization_local(body.grid, position);
+    var inside: DiffusionWay;
+    var scattered = vec3f(0.0f);
+    var near = vec3f(0.0f);
+    var gone = vec3f(0.0f);
+    var way = 0.0f;
+    var filled = 0.0f;
+    var fullest = 0.0f;
+    for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
+        if (end == 0u || inside.densities[end - 1u] > 0.0f) {
+            let before = way;
+            var density = 1.0f;
+            if (end > 0u) {
+                density = max(inside.densities[end - 1u], DIFFUSION_THINNEST);
+                way += (depths[end] - depths[end - 1u]) / (extinction * density);
+            }
+            var found = diffusion_sample(start - way * toward_eye);
+            var below = way * cosine_eye;
+            fullest = max(fullest, found.filled);
+            if (end > 0u && found.filled < 0.5f * fullest) {
+                // The way leaves the body about where the space is half as full as inside.
+                let share = clamp((filled - 0.5f * fullest) / (filled - found.filled), 0.0f, 1.0f);
+                way = mix(before, way, share);
+                found = diffusion_sample(start - way * toward_eye);
+                found.density = 0.0f;
+                below = 0.0f;
+            }
+            filled = found.filled;
+            inside.densities[end] = found.density;
+            let far = diffusion_below(found, below);
+            if (end == 0u) {
+                inside.depth = found.depth;
+            } else {
+                let thickness = body.extinction * (density * (way - before));
+                scattered += exp(-gone) * vec3f(
+                    diffusion_segment(near.x, far.x, thickness.x),
+                    diffusion_segment(near.y, far.y, thickness.y),
+                    diffusion_segment(near.z, far.z, thickness.z),
+                );
+                gone += thickness;
+            }
+            near = far;
+        }
+        inside.ends[end] = vec4f(position - way * body.grid.spacing * toward_eye, way);
+    }
+    if (inside.densities[DIFFUSION_PIECES] > 0.0f) {
+        scattered += exp(-gone) * near;
+    }
+    let h_eye = diffusion_h(cosine_eye);
+    let h_normal = diffusion_h(1.0f);
+    inside.scattered = body.largest * scattered * vec3f(
+        diffusion_angle(cosine_eye, h_eye.x, h_normal.x, DIFFUSION_MILNE),
+        diffusion_angle(cosine_eye, h_eye.y, h_normal.y, DIFFUSION_MILNE),
+        diffusion_angle(cosine_eye, h_eye.z, h_normal.z, DIFFUSION_MILNE),
+    );
+    return inside;
+}
+
+// The way of light from where it enters to a point inside, in voxel spacings, by the map of a view; 0
+// outside the map. Between the middles of texels the surface's height towards the light is linear, so
+// that a plane is met exactly, however oblique.
+fn diffusion_way(layer: u32, position: vec3f, toward_light: vec3f) -> f32 {
+    let size = textureDimensions(maps).x;
+    let clip = reflective_shadow_map_clip(views[layer].view, position);
+    let place = reflective_shadow_map_texel(clip, f32(size));
+    if (any(place < vec2f(0.0f)) || any(place > vec2f(f32(size)))) {
+        return 0.0f;
+    }
+    let corner = floor(place - 0.5f);
+    let weight = place - 0.5f - corner;
+    let last = f32(size - 1u);
+    var way = 0.0f;
+    var whole = 0.0f;
+    for (var index = 0u; index < 4u; index++) {
+        let step = vec2f(f32(index & 1u), f32(index >> 1u));
+        let texel = vec2u(clamp(corner + step, vec2f(0.0f), vec2f(last)));
+        let seen = textureLoad(maps, texel, layer, 0);
+        if (seen.w >= 0.0f) {
+            let sides = step * weight + (1.0f - step) * (1.0f - weight);
+            let share = sides.x * sides.y + 1e-4f;
+            way += share * dot(seen.xyz - position, toward_light);
+            whole += share;
+        }
+    }
+    return max(way / max(whole, 1e-6f), 0.0f) / body.grid.spacing;
+}
+
+// Light that is scattered towards the eye for the first time, along the way inside: radiance for an
+// irradiance of 1 and an albedo of 4 pi.
+fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, inside: DiffusionWay) -> vec3f {
+    var ends = inside.ends;
+    var densities = inside.densities;
+    var sum = vec3f(0.0f);
+    var gone = vec3f(0.0f);
+    var near = vec3f(0.0f);
+    var thick = body.extinction * densities[0];
+    for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
+        var way = diffusion_way(layer, ends[end].xyz, toward_light);
+        way = select(way, way * (1.0f - lit), end == 0u);
+        let far = min(body.extinction * (densities[end] * way), vec3f(30.0f));
+        if (end > 0u) {
+            let thickness = body.extinction * (densities[end - 1u] * (ends[end].w - ends[end - 1u].w));
+            sum += exp(-gone) * vec3f(
+                diffusion_unscattered(thickness.x, near.x, far.x),
+                diffusion_unscattered(thickness.y, near.y, far.y),
+                diffusion_unscattered(thickness.z, near.z, far.z),
+            );
+            gone += thickness;
+        }
+        near = far;
+    }
+    return sum;
+}
+
+@fragment
+fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
+    let toward_eye = normalize(view.eye - input.position);
+    let squared = dot(input.normal, input.normal);
+    let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
+    let cosine_eye = clamp(dot(normal, toward_eye), 0.02f, 1.0f);
+    let albedo = (1.0f - body.gamma) * (1.0f + body.gamma);
+
+    var sent = vec3f(0.0f);
+    //+diffusion {
+    var inside: DiffusionWay;
+    var node = vec3f(0.0f);
+    var gap = vec3f(0.0f);
+    let h_eye = diffusion_h(cosine_eye);
+    if (EFFECT_DIFFUSION) {
+        inside = diffusion_inside(input.position, toward_eye, cosine_eye);
+        sent = 0.07957747f * albedo * inside.scattered;
+        // The two nodes below the point, of whose distances the local part is made.
+        let start = voxelization_local(body.grid, input.position);
+        let behind = diffusion_sample(start - normal * (inside.depth + 1.0f));
+        let optical = body.extinction * inside.densities[0];
+        node = optical * max(inside.depth, 1e-3f);
+        gap = optical * clamp(behind.depth - inside.depth, 0.0f, 1.0f);
+    }
+    //+diffusion }
+    var highlights = vec3f(0.0f);  //+microfacet
+    // The views of a light are consecutive. At a seam between two views both see the point, but it
+    // counts once.
+    var counted = arrayLength(&lights);
+    for (var layer = 0u; layer < arrayLength(&views); layer++) {
+        let light = views[layer].light;
+        let arrival = light_arrival(lights[light], input.position);
+        let cosine = reflective_shadow_map_cosine(normal, arrival.direction);
+        if (light == counted) {
+            continue;
+        }
+        let visible = shadow_in_view(layer, input.position, normal);
+        if (visible < 0.0f) {
+            continue;
+        }
+        counted = light;
+        let lit = select(0.0f, visible, cosine > 0.0f);
+        if (EFFECT_DIFFUSION) {
+            sent += 0.07957747f * albedo * arrival.irradiance * diffusion_single(layer, arrival.direction, lit, inside);
+        }
+        if (lit > 0.0f) {
+            if (EFFECT_DIFFUSION) {
+                let h_light = diffusion_h(cosine);
+                sent += lit * arrival.irradiance * vec3f(
+                    diffusion_local(cosine_eye, cosine, h_eye.x, h_light.x, body.gamma.x, node.x, gap.x),
+                    diffusion_local(cosine_eye, cosine, h_eye.y, h_light.y, body.gamma.y, node.y, gap.y),
+                    diffusion_local(cosine_eye, cosine, h_eye.z, h_light.z, body.gamma.z, node.z, gap.z),
+                );
+            } else {
+                sent += lit * cosine * arrival.irradiance * vec3f(
+                    half_space_brdf(cosine_eye, cosine, body.gamma.x),
+                    half_space_brdf(cosine_eye, cosine, body.gamma.y),
+                    half_space_brdf(cosine_eye, cosine, body.gamma.z),
+                );
+            }
+            if (EFFECT_MICROFACET) {
+                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
+            }
+        }
+    }
+    if (EFFECT_ENVIRONMENT) {
+        let weights = cdrf_harmonic_weights(0.0f);
+        sent += 0.31830987f * harmonics_irradiance(harmonics_around(normal), weights, weights, weights) * vec3f(
+            half_space_directional(cosine_eye, body.gamma.x),
+            half_space_directional(cosine_eye, body.gamma.y),
+            half_space_directional(cosine_eye, body.gamma.z),
+        );
+    }
+    var radiance = sent;
+    if (EFFECT_REFLECTION) {
+        radiance = reflection_over(sent, normal, toward_eye, body.index, body.alpha);
+    }
+    if (EFFECT_MICROFACET) {
+        if (body.alpha > 0.0f) {
+            radiance += highlights;
+        }
+    }
+    return vec4f(radiance, 1.0f);
+}

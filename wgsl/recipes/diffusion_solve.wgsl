@@ -1,0 +1,219 @@
+// diffusion_solve: the fluence of light in a body's cells, by multigrid: sweeps over cells of two colours, corrections from grids half as fine.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Trottenberg, Oosterlee and Schueller, "Multigrid", 2001, sections 2 and 5; Stam, "Multiple
+//   Scattering as a Diffusion Process", 1995, for light; Braess, "Towards Algebraic Multigrid for
+//   Elliptic Problems of Second Order", Computing 55 (1995), for the factor of coarse faces.
+// requires: diffusion
+// parts: diffusion_nodes, diffusion_packed
+//
+// Levels are numbered from the finest. Each has its own buffers, and half the cells along each edge,
+// rounded up. The coarsest is a single cell, which takes up what the whole body has too little.
+// Once the recipe diffusion_cells has made the finest level's equations:
+// 1. For each coarser level `diffusion_solve_coarsen`, one invocation per cell.
+// 2. For each level `diffusion_solve_list`, one invocation per tile of 4 x 4 x 4 cells; `workgroups`
+//    begins as (0, 1, 1). All that follows is dispatched indirectly, by these counts.
+// 3. Cycles: on each level from the finest, `diffusion_solve_sweep` twice for each colour, then
+//    `diffusion_solve_restrict` to the next level; on the coarsest level more sweeps; back up,
+//    `diffusion_solve_prolong` to the next finer level, and sweeps in the colours' reverse order.
+// 4. `diffusion_solve_pack`, for the recipe that shades.
+
+// The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
+// within each coarse cell has slopes twice as steep as one that is linear.
+const DIFFUSION_COARSE: f32 = 0.5f;
+
+struct DiffusionLevel {
+    // Cells along an edge.
+    cells: u32,
+    // Cells along an edge of the next finer level.
+    finer_cells: u32,
+    // The colour of the sweep: the parity of x + y + z.
+    color: u32,
+}
+
+@group(0) @binding(0) var<uniform> level: DiffusionLevel;
+// Tiles that hold matter.
+@group(0) @binding(1) var<storage, read_write> tiles: array<u32>;
+@group(0) @binding(2) var<storage, read_write> workgroups: array<atomic<u32>, 3>;
+@group(0) @binding(3) var<storage, read_write> faces: array<f32>;
+@group(0) @binding(4) var<storage, read_write> reactions: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> fluence: array<f32>;
+@group(0) @binding(6) var<storage, read_write> right: array<f32>;
+// Of the next finer level.
+@group(1) @binding(0) var<storage, read> finer_faces: array<f32>;
+@group(1) @binding(1) var<storage, read> finer_reactions: array<vec4f>;
+// Of the next coarser level.
+@group(1) @binding(2) var<storage, read_write> coarser_fluence: array<f32>;
+@group(1) @binding(3) var<storage, read_write> coarser_right: array<f32>;
+// Words of the part diffusion_nodes, and those of the part diffusion_packed.
+@group(1) @binding(4) var<storage, read> nodes: array<u32>;
+@group(1) @binding(5) var<storage, read_write> packed: array<vec2u>;
+
+fn diffusion_index(cell: vec3u, cells: u32) -> u32 {
+    return cell.x + cells * (cell.y + cells * cell.z);
+}
+
+fn diffusion_of_cell(index: u32) -> vec3f {
+    return vec3f(fluence[3u * index], fluence[3u * index + 1u], fluence[3u * index + 2u]);
+}
+
+fn diffusion_right(index: u32) -> vec3f {
+    return vec3f(right[3u * index], right[3u * index + 1u], right[3u * index + 2u]);
+}
+
+@compute @workgroup_size(64)
+fn diffusion_solve_coarsen(@builtin(global_invocation_id) invocation: vec3u) {
+    let count = level.cells;
+    let index = invocation.x;
+    if (index >= count * count * count) {
+        return;
+    }
+    let cell = vec3u(index % count, index / count % count, index / count / count);
+    var reaction = vec4f(0.0f);
+    var conductances = vec3f(0.0f);
+    for (var part = 0u; part < 8u; part++) {
+        let step = vec3u(part & 1u, (part >> 1u) & 1u, part >> 2u);
+        if (any(2u * cell + step >= vec3u(level.finer_cells))) {
+            continue;
+        }
+        let child = diffusion_index(2u * cell + step, level.finer_cells);
+        reaction += finer_reactions[child];
+        for (var axis = 0u; axis < 3u; axis++) {
+            conductances[axis] += select(0.0f, finer_faces[3u * child + axis], step[axis] == 1u);
+        }
+    }
+    reactions[index] = reaction;
+    for (var axis = 0u; axis < 3u; axis++) {
+        faces[3u * index + axis] = DIFFUSION_COARSE * conductances[axis];
+    }
+}
+
+fn diffusion_tile_corner(tile: u32) -> vec3u {
+    let side = (level.cells + 3u) / 4u;
+    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
+}
+
+@compute @workgroup_size(64)
+fn diffusion_solve_list(@builtin(global_invocation_id) invocation: vec3u) {
+    let side = (level.cells + 3u) / 4u;
+    if (invocation.x >= side * side * side) {
+        return;
+    }
+    let corner = diffusion_tile_corner(invocation.x);
+    let end = min(corner + 4u, vec3u(level.cells));
+    for (var z = corner.z; z < end.z; z++) {
+        for (var y = corner.y; y < end.y; y++) {
+            for (var x = corner.x; x < end.x; x++) {
+                if (reactions[diffusion_index(vec3u(x, y, z), level.cells)].w > 0.0f) {
+                    tiles[atomicAdd(&workgroups[0], 1u)] = invocation.x;
+                    return;
+                }
+            }
+        }
+    }
+}
+
+// Sums over a cell's faces: the fluence beyond each, times its conductance; and the conductances.
+struct DiffusionFaces {
+    inflow: vec3f,
+    conductances: f32,
+}
+
+fn diffusion_across(cell: vec3u, index: u32) -> DiffusionFaces {
+    var sums = DiffusionFaces(vec3f(0.0f), 0.0f);
+    var stride = 1u;
+    for (var axis = 0u; axis < 3u; axis++) {
+        let above = faces[3u * index + axis];
+        if (above > 0.0f) {
+            sums.inflow += above * diffusion_of_cell(index + stride);
+            sums.conductances += above;
+        }
+        if (cell[axis] > 0u) {
+            let below = faces[3u * (index - stride) + axis];
+            if (below > 0.0f) {
+                sums.inflow += below * diffusion_of_cell(index - stride);
+                sums.conductances += below;
+            }
+        }
+        stride *= level.cells;
+    }
+    return sums;
+}
+
+@compute @workgroup_size(32)
+fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let y = (lane >> 1u) & 3u;
+    let z = lane >> 3u;
+    let x = 2u * (lane & 1u) + ((y + z + level.color) & 1u);
+    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(x, y, z);
+    if (any(cell >= vec3u(level.cells))) {
+        return;
+    }
+    let index = diffusion_index(cell, level.cells);
+    let reaction = reactions[index];
+    if (reaction.w <= 0.0f) {
+        return;
+    }
+    let across = diffusion_across(cell, index);
+    for (var channel = 0u; channel < 3u; channel++) {
+        let load = right[3u * index + channel];
+        fluence[3u * index + channel] = diffusion_relax(load, across.inflow[channel], across.conductances, reaction[channel]);
+    }
+}
+
+// What is left of a cell's equations.
+fn diffusion_residual(cell: vec3u, index: u32) -> vec3f {
+    let across = diffusion_across(cell, index);
+    return diffusion_right(index) + across.inflow - (across.conductances + reactions[index].xyz) * diffusion_of_cell(index);
+}
+
+// Hands what is left of this level's equations to the coarser level, whose fluence begins as 0. A
+// workgroup is a tile, and each of its lanes a coarse cell.
+@compute @workgroup_size(8)
+fn diffusion_solve_restrict(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let corner = diffusion_tile_corner(tiles[group.x]) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
+    if (any(corner >= vec3u(level.cells))) {
+        return;
+    }
+    var left = vec3f(0.0f);
+    for (var part = 0u; part < 8u; part++) {
+        let cell = corner + vec3u(part & 1u, (part >> 1u) & 1u, part >> 2u);
+        if (any(cell >= vec3u(level.cells))) {
+            continue;
+        }
+        let index = diffusion_index(cell, level.cells);
+        if (reactions[index].w > 0.0f) {
+            left += diffusion_residual(cell, index);
+        }
+    }
+    let parent = diffusion_index(corner / 2u, (level.cells + 1u) / 2u);
+    for (var channel = 0u; channel < 3u; channel++) {
+        coarser_right[3u * parent + channel] = left[channel];
+        coarser_fluence[3u * parent + channel] = 0.0f;
+    }
+}
+
+// Adds the coarser level's correction.
+@compute @workgroup_size(64)
+fn diffusion_solve_prolong(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    if (any(cell >= vec3u(level.cells))) {
+        return;
+    }
+    let index = diffusion_index(cell, level.cells);
+    let parent = diffusion_index(cell / 2u, (level.cells + 1u) / 2u);
+    if (reactions[index].w > 0.0f) {
+        for (var channel = 0u; channel < 3u; channel++) {
+            fluence[3u * index + channel] += coarser_fluence[3u * parent + channel];
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn diffusion_solve_pack(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    if (any(cell >= vec3u(level.cells))) {
+        return;
+    }
+    let index = diffusion_index(cell, level.cells);
+    packed[index] = diffusion_pack(diffusion_of_cell(index), nodes[index]);
+}

@@ -1,0 +1,170 @@
+// diffusion_source: where light is scattered for the first time: every texel of the lights' maps sends its light straight on into the body, and leaves it with the nodes along the way.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: own; light that is not yet scattered as the source of diffusion as in Ishimaru, "Wave
+//   Propagation and Scattering in Random Media", 1978, chapter 9.
+// requires: diffusion, half_space, reflective_shadow_map, voxelization
+// parts: lights, light_views, diffusion_nodes
+//
+// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map,
+// then diffusion_source_finish with one for each of the three numbers of each voxel.
+
+// The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
+// densities.
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+
+// Light that fills one voxel's face, as a number of units. Light is added up in whole numbers, so that
+// its order makes no difference; sixteen times as much on every side of a voxel still fits.
+const DIFFUSION_LIGHT: f32 = 16777216.0f;
+// Rays end at this optical depth, where 1e-4 of the light is left.
+const DIFFUSION_RAY_DEPTH: f32 = 9.0f;
+
+struct DiffusionSource {
+    grid: VoxelizationGrid,
+    // Extinction per voxel spacing where the density is 1, in each channel.
+    extinction: vec3f,
+    // Milne's length in voxel spacings where the density is 1, in each channel.
+    milne: vec3f,
+    // The root of 1 - albedo, in each channel.
+    gamma: vec3f,
+    // The irradiance that counts as 1: at least the greatest that arrives anywhere.
+    largest: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> source: DiffusionSource;
+// Bindings 2, 4 and 5 belong to the parts.
+@group(1) @binding(0) var<storage, read_write> loads: array<atomic<u32>>;
+@group(1) @binding(1) var<storage, read> nodes: array<u32>;
+// The grid of half the spacing, a bit for each voxel, in rows along x.
+@group(1) @binding(2) var<storage, read> fine: array<u32>;
+@group(1) @binding(3) var<storage, read> density: array<f32>;
+// The right side of the equations, three numbers for each voxel.
+@group(1) @binding(4) var<storage, read_write> right: array<f32>;
+
+// The eight nodes around a point, and their shares in what lies between them.
+struct DiffusionAround {
+    // The number of each node's voxel.
+    voxels: array<u32, 8>,
+    // Weights that add up to 1; all 0 where there is no matter about the point.
+    weights: array<f32, 8>,
+    // The nodes' mean depth, in voxel spacings.
+    depth: f32,
+}
+
+// The nodes around a point, given in voxel spacings from the grid's corner.
+fn diffusion_around(place: vec3f, cells: u32) -> DiffusionAround {
+    let last = f32(cells - 1u);
+    let low = floor(place - 0.5f);
+    let fraction = place - 0.5f - low;
+    var around: DiffusionAround;
+    var whole = 0.0f;
+    var depth = 0.0f;
+    for (var corner = 0u; corner < 8u; corner++) {
+        let step = vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
+        let voxel = vec3u(clamp(low + vec3f(step), vec3f(0.0f), vec3f(last)));
+        let index = voxel.x + cells * (voxel.y + cells * voxel.z);
+        let word = nodes[index];
+        let weight = diffusion_weight(fraction, corner, diffusion_volume(word));
+        around.voxels[corner] = index;
+        around.weights[corner] = weight;
+        whole += weight;
+        depth += weight * diffusion_depth(word);
+    }
+    let scale = select(0.0f, 1.0f / max(whole, 1e-12f), whole > 0.0f);
+    for (var corner = 0u; corner < 8u; corner++) {
+        around.weights[corner] *= scale;
+    }
+    around.depth = depth * scale;
+    return around;
+}
+
+// Whether the finer voxel around a place is filled.
+fn diffusion_filled(place: vec3f) -> bool {
+    let count = 2u * source.grid.cells;
+    let voxel = vec3u(clamp(2.0f * place, vec3f(0.0f), vec3f(f32(count - 1u))));
+    let words = (count + 31u) / 32u;
+    return ((fine[words * (voxel.y + count * voxel.z) + voxel.x / 32u] >> (voxel.x % 32u)) & 1u) != 0u;
+}
+
+@compute @workgroup_size(8, 8)
+fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
+    let size = textureDimensions(maps).x;
+    if (any(texel.xy >= vec2u(size))) {
+        return;
+    }
+    let seen = textureLoad(maps, texel.xy, texel.z, 0);
+    if (seen.w <= 0.0f) {
+        return;
+    }
+    // The map also shows other bodies.
+    let entry = voxelization_local(source.grid, seen.xyz);
+    let cells = source.grid.cells;
+    if (any(entry < vec3f(0.0f)) || any(entry > vec3f(f32(cells)))) {
+        return;
+    }
+    let view = views[texel.z].view;
+    let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
+    let depth = select(1.0f, dot(seen.xyz - view.origin, view.axis), view.lamp == 1u);
+    // The texel's width where the light meets the body, in voxel spacings. Of finer texels, only those
+    // half a spacing apart send light, each for its neighbours too.
+    let width = 2.0f * view.extent * depth / (f32(size) * source.grid.spacing);
+    let stride = u32(clamp(floor(0.5f / max(width, 1e-6f)), 1.0f, 64.0f));
+    if (any(texel.xy % vec2u(stride) != vec2u(stride / 2u))) {
+        return;
+    }
+    let side = width * f32(stride);
+    let slant = select(1.0f, abs(dot(arrival.direction, view.axis)), view.lamp == 1u);
+    let share = arrival.irradiance / source.largest * (side * side * slant);
+    let cosine = seen.w;
+    var energy = share * (1.0f - source.gamma) * (1.0f + source.gamma);
+    for (var channel = 0u; channel < 3u; channel++) {
+        let gamma = source.gamma[channel];
+        energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), DIFFUSION_MILNE);
+    }
+    let densest = max(source.extinction.x, max(source.extinction.y, source.extinction.z));
+    var gone = vec3f(0.0f);
+    var way = 0.0f;
+    var entered = false;
+    for (var step = 0u; step < 1024u; step++) {
+        var local = 1.0f;
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
+            let voxel = vec3u(clamp(entry - (way + 1e-3f) * arrival.direction, vec3f(0.0f), vec3f(f32(cells - 1u))));
+            local = density[voxel.x + cells * (voxel.y + cells * voxel.z)];
+        }
+        let length = min(0.5f, 0.5f / max(densest * local, 1e-6f));
+        let middle = way + 0.5f * length;
+        let place = entry - middle * arrival.direction;
+        let inside = diffusion_filled(place);
+        entered = entered || inside;
+        // The surface cuts voxels, so that a ray may begin beside the first filled one.
+        if ((!inside && (entered || middle > 1.0f)) || min(gone.x, min(gone.y, gone.z)) > DIFFUSION_RAY_DEPTH) {
+            break;
+        }
+        let thickness = source.extinction * (local * length);
+        let around = diffusion_around(place, cells);
+        let below = middle * cosine;
+        var given = vec3f(0.0f);
+        for (var channel = 0u; channel < 3u; channel++) {
+            given[channel] = energy[channel] * diffusion_scattered(gone[channel], thickness[channel])
+                * diffusion_profile(below, around.depth, source.milne[channel] / max(local, DIFFUSION_THINNEST));
+        }
+        for (var corner = 0u; corner < 8u; corner++) {
+            let node = around.voxels[corner];
+            for (var channel = 0u; channel < 3u; channel++) {
+                let units = u32(given[channel] * around.weights[corner] * DIFFUSION_LIGHT + 0.5f);
+                if (units > 0u) {
+                    atomicAdd(&loads[3u * node + channel], units);
+                }
+            }
+        }
+        gone += thickness;
+        way += length;
+    }
+}
+
+@compute @workgroup_size(64)
+fn diffusion_source_finish(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let all = 3u * source.grid.cells * source.grid.cells * source.grid.cells;
+    for (var place = invocation.x; place < all; place += 64u * groups.x) {
+        right[place] = 3.0f * source.extinction[place % 3u] * (f32(atomicLoad(&loads[place])) / DIFFUSION_LIGHT);
+    }
+}
