@@ -10,13 +10,15 @@
 //! Walks start from the eye or from the lights; both give the same image in the mean.
 //!
 //! The eye and the lights must lie outside the bodies; a point light inside gives the right mean,
-//! but its error has no bound.
+//! but its error has no bound. Behind a [dielectric boundary](Boundary::Dielectric) it is refused.
 
+mod estimate;
 mod from_lights;
 mod walk;
 
 use super::generator;
-use glam::{DVec2, DVec3};
+use estimate::{Estimate, Sums};
+use glam::DVec2;
 use lapidary_scene::mesh_diagnosis::open_edges;
 use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Light, Scene};
@@ -24,7 +26,7 @@ use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use walk::{Matter, Ray};
+use walk::{Beginnings, Matter, Ray};
 
 /// Largest number of samples per pixel.
 pub const MOST_SAMPLES: u32 = 1 << 20;
@@ -58,7 +60,7 @@ pub enum Origin {
     #[default]
     Eye,
     /// From the lights: less noise for the same time, least in the brightest pixels. Only for the
-    /// scene's own lights, and only with matched boundaries.
+    /// scene's own lights.
     Lights,
 }
 
@@ -74,6 +76,13 @@ impl Origin {
             Self::Lights => "lights",
         }
     }
+
+    fn other(self) -> Self {
+        match self {
+            Self::Eye => Self::Lights,
+            Self::Lights => Self::Eye,
+        }
+    }
 }
 
 /// How a body's surface acts on light.
@@ -86,9 +95,14 @@ pub enum Boundary {
     /// reflectance, from outside and from inside, as at a polished surface. Mirror reflections of
     /// the surroundings were not scattered and are left out.
     ///
-    /// Light is then found only by walks that leave the bodies: from the environment, and from
-    /// directional lights as discs of radius 0.1 rad around their direction, which takes very many
-    /// walks. Point lights and spots are not allowed.
+    /// Each scattering is connected with each light, or with the eye, by all paths that are
+    /// refracted once and meet no other surface. Light that begins in another way, reflected by a
+    /// body or refracted by several surfaces before it is scattered for the first time, is found by
+    /// walks from the other end, as many as [`Settings::samples_per_pixel`] says. Left out are paths
+    /// both of whose ends, at the light and at the eye, are of this kind. The share left out is
+    /// about the product of the two ends' shares: below 0.1 % of the power of a picture of convex
+    /// bodies some mean free paths wide. The environment is found by walks that leave; nothing of
+    /// it is left out.
     Dielectric,
 }
 
@@ -102,7 +116,8 @@ pub struct Rendering {
     ///
     /// From the eye, it is computed as for independent samples. Since they are spread evenly over
     /// the pixel, the true error is no greater, and less where the pixel's brightness varies. From
-    /// the lights, it is computed from the spread of 64 batches.
+    /// the lights, it is computed from the spread of 64 batches. Errors of walks from both ends are
+    /// added as independent.
     pub standard_error: Vec<[f32; 3]>,
     /// Number of walks that met a body.
     pub walks: u64,
@@ -126,11 +141,12 @@ pub enum WalkError {
     /// Too few samples to estimate their error, or too many.
     #[error("{0} samples a pixel are out of range; take 2 to {MOST_SAMPLES}")]
     Samples(u32),
-    /// A point light or spot, which no walk through a dielectric boundary would meet.
+    /// A point light or spot inside a body with a dielectric boundary, to which no path is refracted
+    /// once.
     #[error(
-        "light {light} has no size, so that no walk through a dielectric boundary meets it; take it out or match the boundary"
+        "light {light} lies inside a body; behind a dielectric boundary it must lie outside: move it or match the boundary"
     )]
-    Point {
+    Inside {
         /// Index among the scene's lights, from 0.
         light: usize,
     },
@@ -139,9 +155,6 @@ pub enum WalkError {
         "walks from the lights follow the scene's own lights alone; leave the environment out or walk from the eye"
     )]
     Environment,
-    /// A dielectric boundary, behind which walks from the lights find no eye.
-    #[error("walks from the lights find no eye behind a dielectric boundary; match the boundary or walk from the eye")]
-    Dielectric,
     /// A body without a medium.
     #[error(
         "{object:?} has no scattering and absorption coefficients, so that no light can be followed through it; give its material a medium"
@@ -188,38 +201,70 @@ pub fn render(
     if origin == Origin::Lights && environment.is_some() {
         return Err(WalkError::Environment);
     }
-    if origin == Origin::Lights && boundary == Boundary::Dielectric {
-        return Err(WalkError::Dielectric);
-    }
     let matter = matter(scene, boundary, environment)?;
     let view = View::new(&scene.camera, width, height);
-    if origin == Origin::Lights {
-        return Ok(from_lights::render(&matter, (&scene.lights, scene.bounds()), &view, settings, progress));
-    }
+    let lights = (&scene.lights[..], scene.bounds());
+    // Walks from the other end find what connections through a refracting surface miss.
+    let first = Pass { origin, beginnings: Beginnings::All, seed };
+    let second = Pass { origin: origin.other(), beginnings: Beginnings::Indirect, seed: !seed };
+    let passes = if matter.refracts() { vec![first, second] } else { vec![first] };
+    let parts = |pass: &Pass| match pass.origin {
+        Origin::Eye => height,
+        Origin::Lights => from_lights::BATCHES,
+    };
+    // Walks from the eye tell the coverage as well.
+    let is_covered = passes.iter().any(|pass| pass.origin == Origin::Eye);
+    let all = passes.iter().map(parts).sum::<u32>() + if is_covered { 0 } else { height };
     let done = AtomicU64::new(0);
+    let note = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, all.into());
+    let samples = samples_per_pixel;
+    let estimates = passes.iter().map(|&pass| match pass.origin {
+        Origin::Eye => from_eye(&matter, (&view, width, height), samples, pass, &note),
+        Origin::Lights => from_lights::estimate(&matter, lights, (&view, width, height), samples, pass, &note),
+    });
+    let mut estimate = estimates.reduce(Estimate::plus).unwrap_or_default();
+    if !is_covered {
+        estimate.coverage = from_lights::coverage(&matter, (&view, width, height), &note);
+    }
+    Ok(estimate.rendering())
+}
+
+/// Walks from one end.
+#[derive(Clone, Copy, Debug)]
+struct Pass {
+    origin: Origin,
+    /// Which of them count.
+    beginnings: Beginnings,
+    seed: u64,
+}
+
+/// Estimates the picture by walks from the eye.
+fn from_eye(
+    matter: &Matter<'_>,
+    (view, width, height): (&View, u32, u32),
+    samples: u32,
+    Pass { beginnings, seed, .. }: Pass,
+    note: &(dyn Fn() + Sync),
+) -> Estimate {
     let row = |y: u32| {
         let pixel = |x: u32| {
-            Pixel::new(
-                &matter,
-                &view,
-                (x, y),
-                samples_per_pixel,
-                (seed, u64::from(y) * u64::from(width) + u64::from(x)),
-            )
+            let stream = (seed, u64::from(y) * u64::from(width) + u64::from(x));
+            Pixel::new(matter, view, (x, y), (samples, beginnings), stream)
         };
         let row: Vec<Pixel> = (0..width).map(pixel).collect();
-        progress(done.fetch_add(1, Ordering::Relaxed) + 1, height.into());
+        note();
         row
     };
     let rows: Vec<Vec<Pixel>> = (0..height).into_par_iter().map(row).collect();
     let pixels = || rows.iter().flatten();
-    Ok(Rendering {
-        linear: pixels().map(|pixel| pixel.linear(samples_per_pixel)).collect(),
-        standard_error: pixels().map(|pixel| pixel.standard_error(samples_per_pixel)).collect(),
+    Estimate {
+        radiance: pixels().map(|pixel| pixel.sums.mean(samples)).collect(),
+        variance: pixels().map(|pixel| pixel.sums.variance(samples)).collect(),
+        coverage: pixels().map(|pixel| (f64::from(pixel.walks) / f64::from(samples)) as f32).collect(),
         walks: pixels().map(|pixel| u64::from(pixel.walks)).sum(),
         scatterings: pixels().map(|pixel| pixel.scatterings).sum(),
         lost: pixels().map(|pixel| u64::from(pixel.lost)).sum(),
-    })
+    }
 }
 
 /// Prepares the bodies of a scene for walks; returns an error if a body or light is unsuitable.
@@ -228,10 +273,6 @@ fn matter<'scene>(
     boundary: Boundary,
     environment: Option<&'scene Environment>,
 ) -> Result<Matter<'scene>, WalkError> {
-    let point = scene.lights.iter().position(|light| matches!(light, Light::Point { .. } | Light::Spot { .. }));
-    if let Some(light) = point.filter(|_| boundary == Boundary::Dielectric) {
-        return Err(WalkError::Point { light });
-    }
     for object in &scene.objects {
         let (edges, name) = (open_edges(&object.mesh), || object.name.clone());
         if edges > 0 {
@@ -241,8 +282,16 @@ fn matter<'scene>(
             return Err(WalkError::InsideOut { object: name() });
         }
     }
-    Matter::new(scene, boundary, environment)
-        .map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })
+    let matter = Matter::new(scene, boundary, environment)
+        .map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })?;
+    let is_inside = |light: &Light| match light {
+        Light::Directional { .. } => false,
+        Light::Point { position, .. } | Light::Spot { position, .. } => matter.contains(position.as_dvec3()),
+    };
+    match scene.lights.iter().position(is_inside).filter(|_| matter.refracts()) {
+        Some(light) => Err(WalkError::Inside { light }),
+        None => Ok(matter),
+    }
 }
 
 /// Samples a point of the unit square for one of `samples` samples: the largest square number of
@@ -259,8 +308,7 @@ fn stratum(sample: u64, samples: u64, random: &mut Xoshiro256PlusPlus) -> DVec2 
 /// Sums over the samples of a pixel.
 #[derive(Clone, Copy, Default)]
 struct Pixel {
-    radiance: DVec3,
-    squares: DVec3,
+    sums: Sums,
     walks: u32,
     scatterings: u64,
     lost: u32,
@@ -268,35 +316,26 @@ struct Pixel {
 
 impl Pixel {
     /// `stream` selects the pixel's generator: the image's seed and the pixel's number.
-    fn new(matter: &Matter<'_>, view: &View, (x, y): (u32, u32), samples: u32, stream: (u64, u64)) -> Self {
+    fn new(
+        matter: &Matter<'_>,
+        view: &View,
+        (x, y): (u32, u32),
+        (samples, beginnings): (u32, Beginnings),
+        stream: (u64, u64),
+    ) -> Self {
         let mut random = generator(stream.0, stream.1);
         let mut pixel = Self::default();
         for sample in 0..samples {
             let place = stratum(sample.into(), samples.into(), &mut random);
             let direction = view.direction(f64::from(x) + place.x, f64::from(y) + place.y);
             let Some(hit) = matter.enter(view.eye, direction) else { continue };
-            let outcome = matter.walk(Ray { position: view.eye, direction }, hit, &mut random);
-            pixel.radiance += outcome.radiance;
-            pixel.squares += outcome.radiance * outcome.radiance;
+            let outcome = matter.walk(Ray { position: view.eye, direction }, hit, beginnings, &mut random);
+            pixel.sums.add(outcome.radiance);
             pixel.walks += 1;
             pixel.scatterings += u64::from(outcome.scatterings);
             pixel.lost += u32::from(outcome.lost);
         }
         pixel
-    }
-
-    fn linear(&self, samples: u32) -> [f32; 4] {
-        let share = 1.0 / f64::from(samples);
-        let [red, green, blue] = (self.radiance * share).as_vec3().to_array();
-        [red, green, blue, (f64::from(self.walks) * share) as f32]
-    }
-
-    fn standard_error(&self, samples: u32) -> [f32; 3] {
-        let count = f64::from(samples);
-        let mean = self.radiance / count;
-        // Rounding may make the difference slightly negative.
-        let variance = (self.squares / count - mean * mean).max(DVec3::ZERO) / (count - 1.0);
-        variance.map(f64::sqrt).as_vec3().to_array()
     }
 }
 

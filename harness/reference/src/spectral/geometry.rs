@@ -81,6 +81,16 @@ impl Bodies {
         self.mattes.sent(hit, point)
     }
 
+    /// Returns the corners and outward unit normal of each triangle of a body, in the order of its
+    /// faces; the normal is 0 if the triangle has no area. Nothing for a body made of planes.
+    pub(crate) fn triangles(&self, body: usize) -> impl Iterator<Item = (&[DVec3; 3], &DVec3)> {
+        let (corners, normals) = match &self.bodies[body] {
+            Body::Convex(_) => (&[][..], &[][..]),
+            Body::Triangles(triangles) => (&triangles.corners[..], &triangles.normals[..]),
+        };
+        corners.iter().zip(normals)
+    }
+
     /// Finds where a ray from outside first enters a body; `left` is the face that it comes from.
     pub(crate) fn enter(&self, origin: DVec3, direction: DVec3, left: Option<Place>) -> Option<Hit> {
         // A ray that leaves a convex body does not meet it again.

@@ -3,6 +3,7 @@
 //! The two differ only in the targets with which each scattering is connected.
 
 mod follow;
+mod refracted;
 
 use super::Boundary;
 use crate::spectral::geometry::{Bodies, Geometry, Hit, Place};
@@ -12,6 +13,7 @@ use lapidary_scene::light::Arrival;
 use lapidary_scene::view::{Sight, View};
 use lapidary_scene::{Environment, Light, Medium, Object, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
+use refracted::{Facing, Source};
 
 /// A walk whose strongest channel has less left than this continues with the probability that
 /// compensates for its gain. This constant and the next were chosen for the least product of time
@@ -29,6 +31,10 @@ pub(super) struct Matter<'scene> {
     structures: Vec<Structure>,
     boundary: Boundary,
     lights: Vec<Light>,
+    /// For each light, the surface of each body that faces it; empty if boundaries are matched.
+    facing_lights: Vec<Vec<Facing>>,
+    /// The same for the eye.
+    facing_eye: Vec<Facing>,
     environment: Option<&'scene Environment>,
     /// Bounds of all bodies: a walk outside them has slipped through a surface.
     least: DVec3,
@@ -81,6 +87,16 @@ impl Targets<'_> {
     }
 }
 
+/// Which walks count, by the surfaces that they meet before they are scattered for the first time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Beginnings {
+    /// All walks.
+    All,
+    /// Only walks that meet more than one surface: those that a connection with the place where
+    /// they start would miss.
+    Indirect,
+}
+
 /// Result of a walk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outcome {
@@ -111,12 +127,29 @@ impl<'scene> Matter<'scene> {
         let boundary = if structures.iter().all(Structure::is_matched) { Boundary::Matched } else { boundary };
         let bounds = scene.bounds();
         let margin = 1e-6 * f64::from(bounds.radius());
+        let bodies = Bodies::new(&scene.objects, Geometry::Triangles);
+        let (mut facing_lights, mut facing_eye) = (Vec::new(), Vec::new());
+        if boundary == Boundary::Dielectric {
+            let facing = |source: Source| {
+                let body =
+                    |(body, structure): (usize, &Structure)| Facing::new(&bodies, body, source, structure.index());
+                structures.iter().enumerate().map(body).collect()
+            };
+            let source = |light: &Light| match light {
+                Light::Directional { toward, .. } => Source::Far(toward.as_dvec3().normalize()),
+                Light::Point { position, .. } | Light::Spot { position, .. } => Source::At(position.as_dvec3()),
+            };
+            facing_lights = scene.lights.iter().map(|light| facing(source(light))).collect();
+            facing_eye = facing(Source::At(scene.camera.eye.as_dvec3()));
+        }
         Ok(Self {
-            bodies: Bodies::new(&scene.objects, Geometry::Triangles),
+            bodies,
             coefficients,
             structures,
             boundary,
             lights: scene.lights.clone(),
+            facing_lights,
+            facing_eye,
             environment,
             least: bounds.min.as_dvec3() - margin,
             greatest: bounds.max.as_dvec3() + margin,
@@ -128,10 +161,24 @@ impl<'scene> Matter<'scene> {
         self.bodies.enter(origin, direction, None)
     }
 
+    /// Whether light is refracted at a surface.
+    pub(super) fn refracts(&self) -> bool {
+        self.boundary == Boundary::Dielectric
+    }
+
+    /// Whether a point lies inside a body.
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        let front = self.bodies.enter(point, DVec3::Z, None).map_or(f64::INFINITY, |hit| hit.distance);
+        let leaves = |body: usize| self.bodies.leave_body(point, DVec3::Z, body, None, f64::INFINITY);
+        // Bodies do not overlap: a ray from inside leaves before it enters.
+        (0..self.coefficients.len()).any(|body| leaves(body).is_some_and(|hit| hit.distance < front))
+    }
+
     /// Follows a ray from the eye that meets a body at `hit`.
-    pub(super) fn walk(&self, ray: Ray, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+    pub(super) fn walk(&self, ray: Ray, hit: Hit, beginnings: Beginnings, random: &mut Xoshiro256PlusPlus) -> Outcome {
         let mut radiance = DVec3::ZERO;
-        let outcome = self.follow(Targets::Lights(&self.lights), ray, hit, random, &mut |_, value| radiance += value);
+        let targets = Targets::Lights(&self.lights);
+        let outcome = self.follow(targets, ray, hit, beginnings, random, &mut |_, value| radiance += value);
         Outcome { radiance: radiance + outcome.radiance, ..outcome }
     }
 
@@ -142,10 +189,11 @@ impl<'scene> Matter<'scene> {
         eye: &View,
         ray: Ray,
         hit: Hit,
+        beginnings: Beginnings,
         random: &mut Xoshiro256PlusPlus,
         mut deposit: impl FnMut([u32; 2], DVec3),
     ) -> Outcome {
-        self.follow(Targets::Eye(eye), ray, hit, random, &mut deposit)
+        self.follow(Targets::Eye(eye), ray, hit, beginnings, random, &mut deposit)
     }
 
     /// Whether a point lies within the bounds of all bodies. Written so that it is false for NaN

@@ -5,27 +5,26 @@
 //! collision is real. The balance heuristic weights each flight by what each channel would have
 //! done, as in uniform media.
 //!
-//! A ray from a collision finds a light through a refracting surface only by chance. With a
-//! dielectric boundary, light is therefore found by walks that leave: from the environment, and
-//! from directional lights as small discs. Refraction or reflection is chosen at random by the
-//! Fresnel reflectance.
+//! At a dielectric boundary, refraction or reflection is chosen at random by the Fresnel
+//! reflectance. A straight ray from a collision does not find a light behind such a boundary: the
+//! paths with one refraction are computed instead. The environment is found by walks that leave.
 
 use super::super::Boundary;
-use super::{Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
+use super::refracted::{Facing, Path};
+use super::{Beginnings, Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
 use crate::random_walk::isotropic;
 use crate::spectral::geometry::{Hit, Place};
 use glam::{DVec2, DVec3};
 use lapidary_random_walk::oracle;
-use lapidary_scene::{Density, Light, Object};
+use lapidary_scene::{Density, Object};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use std::f64::consts::{PI, TAU};
 
-/// Angular radius of a directional light behind a dielectric boundary, in radians. Penumbrae of
-/// stone are wider.
-const LIGHT_RADIUS: f64 = 0.1;
 /// Largest number of surfaces met between two collisions; a walk that meets more is trapped.
 const MOST_REFLECTIONS: u32 = 10_000;
+/// A surface this much nearer than a crossing, as a share of its distance, is in the way.
+const NEARER: f64 = 1e-9;
 /// A transmittance below this continues with the probability [`GOES_ON`].
 const FAINT: f64 = 0.02;
 const GOES_ON: f64 = 0.25;
@@ -56,6 +55,11 @@ impl Structure {
                 Boundary::Dielectric => object.material.ior.into(),
             },
         })
+    }
+
+    /// Refractive index relative to the surroundings of all bodies.
+    pub(super) fn index(&self) -> f64 {
+        self.index
     }
 
     /// Whether light crosses the boundary unchanged.
@@ -106,7 +110,8 @@ enum Arrival {
 }
 
 impl Matter<'_> {
-    /// Follows a ray that meets a body at `hit`, and connects each scattering with the targets.
+    /// Follows a ray that meets a body at `hit`, and connects each scattering with the targets. A
+    /// walk that does not count, by its beginning, ends before its first scattering.
     ///
     /// One walk serves all three channels. At each flight, one channel is chosen in proportion to
     /// its throughput, and its extinction gives the length. Each channel is then weighted by its
@@ -118,12 +123,14 @@ impl Matter<'_> {
         targets: Targets<'_>,
         mut ray: Ray,
         hit: Hit,
+        beginnings: Beginnings,
         random: &mut Xoshiro256PlusPlus,
         deposit: &mut impl FnMut([u32; 2], DVec3),
     ) -> Outcome {
         let mut outcome = Outcome::default();
         let mut throughput = DVec3::ONE;
-        let mut arrival = self.arrive(&mut ray, Some(hit), random);
+        let mut surfaces = 0;
+        let mut arrival = self.arrive(&mut ray, Some(hit), &mut surfaces, random);
         'bodies: loop {
             let Place { body, face } = match arrival {
                 Arrival::Body(place) => place,
@@ -145,9 +152,10 @@ impl Matter<'_> {
                     let transmittance = (-out.distance * majorant).exp();
                     throughput = weighted(throughput, transmittance, transmittance);
                     ray.position += out.distance * ray.direction;
+                    surfaces += 1;
                     if structure.crosses(&mut ray.direction, -out.normal, structure.index.recip(), random) {
                         let next = self.bodies.enter(ray.position, ray.direction, Some(out.place));
-                        arrival = self.arrive(&mut ray, next, random);
+                        arrival = self.arrive(&mut ray, next, &mut surfaces, random);
                         continue 'bodies;
                     }
                     left = Some(out.place.face);
@@ -169,6 +177,9 @@ impl Matter<'_> {
                 if share < 1.0 && random.random::<f64>() >= share {
                     throughput = weighted(throughput, majorant * transmittance, majorant * transmittance);
                     continue;
+                }
+                if outcome.scatterings == 0 && surfaces == 1 && beginnings == Beginnings::Indirect {
+                    return outcome;
                 }
                 throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
                 let mut connected = |place, value: DVec3| deposit(place, throughput * value);
@@ -192,10 +203,17 @@ impl Matter<'_> {
     }
 
     /// Takes a ray outside to the body that it enters, reflected by those that it does not; `next`
-    /// is its first hit.
-    fn arrive(&self, ray: &mut Ray, mut next: Option<Hit>, random: &mut Xoshiro256PlusPlus) -> Arrival {
+    /// is its first hit. Adds to the number of `surfaces` that it meets.
+    fn arrive(
+        &self,
+        ray: &mut Ray,
+        mut next: Option<Hit>,
+        surfaces: &mut u32,
+        random: &mut Xoshiro256PlusPlus,
+    ) -> Arrival {
         for _ in 0..MOST_REFLECTIONS {
             let Some(hit) = next else { return Arrival::Nowhere };
+            *surfaces += 1;
             ray.position += hit.distance * ray.direction;
             let structure = &self.structures[hit.place.body];
             if structure.crosses(&mut ray.direction, hit.normal, structure.index, random) {
@@ -215,21 +233,10 @@ impl Matter<'_> {
         if let Some(environment) = self.environment {
             outcome.radiance += throughput * environment.radiance(direction);
         }
-        if self.boundary == Boundary::Dielectric {
-            for light in &self.lights {
-                if let Light::Directional { toward, irradiance } = light
-                    && direction.dot(toward.as_dvec3().normalize()) > LIGHT_RADIUS.cos()
-                {
-                    // Radiance of a disc with this irradiance, measured perpendicular to its
-                    // centre.
-                    outcome.radiance += throughput * irradiance.as_dvec3() / (PI * LIGHT_RADIUS.sin().powi(2));
-                }
-            }
-        }
     }
 
     /// Deposits the light that the targets send to a point in `body`, or see of it, times the phase
-    /// function; nothing behind a dielectric boundary. Returns `None` if a surface has a gap.
+    /// function. Returns `None` if a surface has a gap.
     pub(super) fn connect(
         &self,
         targets: Targets<'_>,
@@ -238,12 +245,12 @@ impl Matter<'_> {
         random: &mut Xoshiro256PlusPlus,
         deposit: &mut impl FnMut([u32; 2], DVec3),
     ) -> Option<()> {
-        if self.boundary == Boundary::Dielectric {
+        if self.refracts() {
+            self.connect_refracted(targets, ray, body, random, deposit);
             return Some(());
         }
         let structure = &self.structures[body];
-        // Any rate gives the right mean; at this one, no gain outgrows the attenuation on the way.
-        let least = self.coefficients[body].extinction.min_element() * structure.least;
+        let least = self.least_extinction(body);
         for target in 0..targets.count() {
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
             let Some((found, place)) = targets.at(target, ray.position) else { continue };
@@ -265,6 +272,54 @@ impl Matter<'_> {
             deposit(place, irradiance * gain * transmittance * structure.phase(ray.direction.dot(direction)));
         }
         Some(())
+    }
+
+    /// The least extinction of a channel anywhere in a body: the rate at which paths to the targets
+    /// end at random. Any rate gives the right mean; at this one, no gain outgrows the attenuation on
+    /// the way.
+    fn least_extinction(&self, body: usize) -> f64 {
+        self.coefficients[body].extinction.min_element() * self.structures[body].least
+    }
+
+    /// The same as [`connect`](Self::connect) behind a dielectric boundary: by all paths that are
+    /// refracted once, at the surface of `body`, and meet no other surface.
+    fn connect_refracted(
+        &self,
+        targets: Targets<'_>,
+        ray: Ray,
+        body: usize,
+        random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
+    ) {
+        let structure = &self.structures[body];
+        let least = self.least_extinction(body);
+        for target in 0..targets.count() {
+            let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
+            self.facing(targets, target, body).visit(ray.position, limit, |path| {
+                let Path { distance, direction, crossing, face, gain } = path;
+                let Some((found, place)) = targets.at(target, crossing) else { return };
+                let end = distance * (1.0 + NEARER);
+                let before = self.bodies.leave_body(ray.position, direction, body, None, end);
+                if before.is_some_and(|hit| hit.place.face != face && hit.distance < distance * (1.0 - NEARER)) {
+                    return;
+                }
+                let outside = self.bodies.enter(crossing, found.direction, Some(Place { body, face }));
+                if outside.is_some_and(|hit| hit.distance < found.distance) {
+                    return;
+                }
+                let transmittance = self.transmittance(body, Ray { direction, ..ray }, distance, random);
+                let gain = gain * (least * distance - SURE).max(0.0).exp();
+                deposit(place, found.irradiance * gain * transmittance * structure.phase(ray.direction.dot(direction)));
+            });
+        }
+    }
+
+    /// The surface of a body that faces a target.
+    fn facing(&self, targets: Targets<'_>, target: usize, body: usize) -> &Facing {
+        match targets {
+            Targets::Lights(_) => &self.facing_lights[target][body],
+            Targets::Eye(_) => &self.facing_eye[body],
+        }
     }
 
     /// Estimates the share of light left after a path inside a body, by ratio tracking; exact in

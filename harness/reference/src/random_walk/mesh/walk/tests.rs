@@ -65,7 +65,7 @@ pub(super) fn estimate(
 /// Returns the outcome of a ray: its radiance, and its throughput if nothing scatters it.
 pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> Outcome {
     let Some(hit) = matter.enter(origin, direction) else { return Outcome::default() };
-    let outcome = matter.walk(Ray { position: origin, direction }, hit, random);
+    let outcome = matter.walk(Ray { position: origin, direction }, hit, Beginnings::All, random);
     assert!(!outcome.lost);
     outcome
 }

@@ -4,7 +4,7 @@ use crate::random_walk::{generator, half_space};
 use glam::{UVec3, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
-use lapidary_scene::{DensityGrid, Environment, Medium, Mesh};
+use lapidary_scene::{DensityGrid, Environment, Light, Medium, Mesh};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
 
@@ -158,7 +158,7 @@ fn white_furnace() {
                 let through = 5.0 * random.random::<f64>() * isotropic(random);
                 let direction = (through - origin).normalize();
                 let Some(hit) = matter.enter(origin, direction) else { continue };
-                let outcome = matter.walk(Ray { position: origin, direction }, hit, random);
+                let outcome = matter.walk(Ray { position: origin, direction }, hit, Beginnings::All, random);
                 let all = outcome.radiance + outcome.straight;
                 assert!(outcome.lost || (all.element_sum() - 3.0).abs() < 1e-9, "{all}");
                 break if outcome.lost { DVec3::ONE } else { all };
@@ -169,21 +169,32 @@ fn white_furnace() {
     }
 }
 
-/// Behind a boundary without effect, a light's disc is as bright as the light itself. The test
-/// compares a sun found by chance with a sun found by shadow rays.
+/// Connections through the boundary give the radiance of a half space lit by a sun, and by a lamp
+/// so far away that it is a sun; light and eye may change places.
 #[test]
-fn a_directional_light_is_found_by_chance_too() {
-    let lit = |boundary: Boundary, count: u32| {
-        let mut scene = scene(vec![(sphere(3.0, 64), grey(0.9))], vec![sun(towards(0.8))]);
-        scene.objects[0].material.ior = 1.000_001;
-        let matter = Matter::new(&scene, boundary, None).expect("media");
-        estimate(count, 8, |random| seen(&matter, DVec3::new(0.4, 0.7, 9.0), DVec3::NEG_Z, random).radiance)
-    };
-    let (sure, sure_error) = lit(Boundary::Matched, 20_000);
-    let (chance, error) = lit(Boundary::Dielectric, 600_000);
-    println!("{} ± {}, by chance {} ± {}", sure.x, sure_error.x, chance.x, error.x);
-    // The disc's width moves the mean by less than a percent.
-    assert!((chance.x - sure.x).abs() < 4.0 * error.x.hypot(sure_error.x) + 0.01 * sure.x && error.x < 0.05 * sure.x);
+fn half_spaces_behind_glass_shine_as_is_known() {
+    for (albedo, index) in [(0.9f32, 1.4f32)] {
+        for (mu0, mu) in [(1.0, 1.0), (0.4, 0.8), (0.8, 0.4)] {
+            let (body, least, greatest) = deep_box();
+            let far = 1e6 * towards(mu0);
+            let lamp = Light::Point { position: far.as_vec3(), intensity: Vec3::splat(1e12) };
+            for (light, medium) in [(sun(towards(mu0)), split(albedo, least, greatest)), (lamp, grey(albedo))] {
+                let mut scene = scene(vec![(body.clone(), medium)], vec![light]);
+                scene.objects[0].material.ior = index;
+                let matter = Matter::new(&scene, Boundary::Dielectric, None).expect("media");
+                let eye = DVec3::new(0.0, towards(mu).x, mu);
+                let aside = DVec3::new(0.31, 0.17, 0.0);
+                let sample = |random: &mut _| seen(&matter, aside + 3.0 * eye, -eye, random).radiance;
+                let (mean, error) = estimate(1_200_000, 5, sample);
+                let expected = mu0 * half_space::radiance_behind(mu, mu0, albedo.into(), index.into());
+                println!(
+                    "albedo {albedo} behind {index}, {mu0} to {mu}: {:.5} ± {:.5}, expected {expected:.5}",
+                    mean.x, error.x
+                );
+                assert!((mean.x - expected).abs() < 4.0 * error.x && error.x < 0.03 * expected);
+            }
+        }
+    }
 }
 
 #[test]
