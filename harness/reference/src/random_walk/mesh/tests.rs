@@ -59,12 +59,12 @@ fn a_far_point_light_is_a_directional_one() {
     let distance = 1e7;
     scene.lights = vec![Light::Point { position: distance * toward, intensity: distance * distance * irradiance }];
     let lamplit = both(&scene);
-    for (sunlit, lamplit) in sunlit.iter().zip(&lamplit) {
-        are_nearly_the_same(sunlit, lamplit);
-    }
-}
-
-fn are_nearly_the_same(sunlit: &Rendering, lamplit: &Rendering) {
+    let [sunlit, behind_boundary] = sunlit;
+    let [lamplit, other_behind_boundary] = lamplit;
+    // Walks from the lights fill in a little, and they differ.
+    let [(one, error), (other, other_error)] = [&behind_boundary, &other_behind_boundary].map(totals);
+    println!("behind a boundary {one} ± {error}, {other} ± {other_error}");
+    assert!((one - other).abs().cmplt(error + other_error).all());
     let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
     // The walks are the same: only the direction to the light differs, by 1e-6, and by f32
     // rounding.
@@ -72,7 +72,7 @@ fn are_nearly_the_same(sunlit: &Rendering, lamplit: &Rendering) {
     // However, light that grazes an edge may fall on either side.
     let (compared, different) = (pairs().count(), pairs().filter(apart).count());
     let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
-    let ratio = total(lamplit) / total(sunlit);
+    let ratio = total(&lamplit) / total(&sunlit);
     println!("{different} of {compared} pixels differ; in all {ratio}");
     assert!(compared > 150 && different * 50 < compared && (ratio - 1.0).abs() < 1e-3);
 }
@@ -221,13 +221,13 @@ fn a_sun_behind_a_boundary_is_a_disc_met_by_chance() {
         let settings = Settings { environment, origin, boundary: Boundary::Dielectric, ..settings(16, samples) };
         totals(&rendered(&scene, &settings))
     };
-    let (chance, chance_error) = walked(Vec::new(), Some(&disc), Origin::Eye, 4096);
+    let (chance, chance_error) = walked(Vec::new(), Some(&disc), Origin::Eye, 8192);
     for origin in Origin::ALL {
         let (found, error) = walked(vec![sun], None, origin, 400);
         println!("from the {}: {found} ± {error}, by chance {chance} ± {chance_error}", origin.name());
         // The disc's width moves the mean by less than a percent.
         let allowed = 4.0 * (error * error + chance_error * chance_error).map(f64::sqrt) + 0.01 * chance;
-        assert!((found - chance).abs().cmplt(allowed).all() && chance_error.cmplt(0.03 * chance).all());
+        assert!((found - chance).abs().cmplt(allowed).all() && chance_error.cmplt(0.035 * chance).all());
     }
 }
 

@@ -69,8 +69,17 @@ struct Beam {
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    beam: Beam,
+    reach: Reach,
     content: Content,
+}
+
+/// A beam, made ready to be tested for points.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    /// The greatest corner of the box of positions and the least.
+    corners: [DVec3; 2],
+    /// Reciprocals of the greatest directions and the least.
+    inverse: [DVec3; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +115,7 @@ impl Facing {
         let triangles = &mut self.triangles[first..end];
         let beam = triangles[1..].iter().fold(triangles[0].beam, |beam, triangle| beam.with(&triangle.beam));
         let place = self.nodes.len();
-        self.nodes.push(Node { beam, content: Content::Leaf(first) });
+        self.nodes.push(Node { reach: Reach::of(&beam), content: Content::Leaf(first) });
         if triangles.len() == 1 {
             return;
         }
@@ -128,7 +137,7 @@ impl Facing {
         while count > 0 {
             count -= 1;
             let place = waiting[count];
-            if !self.nodes[place].beam.reaches(position, limit) {
+            if !self.nodes[place].reach.contains(position, limit) {
                 continue;
             }
             match self.nodes[place].content {
@@ -240,28 +249,28 @@ impl Beam {
             greatest_direction: self.greatest_direction.max(other.greatest_direction),
         }
     }
+}
+
+impl Reach {
+    fn of(beam: &Beam) -> Self {
+        let (least, greatest) = (beam.least, beam.greatest);
+        // A component of 0 sets a bound at infinity.
+        let inverse = |direction: DVec3| direction.map(|part| if part.abs() < 1e-300 { 1e300 } else { 1.0 / part });
+        Self { corners: [greatest, least], inverse: [inverse(beam.greatest_direction), inverse(beam.least_direction)] }
+    }
 
     /// Whether `position` may be in the beam, at most `limit` from the surface. The coordinates are
     /// tested one by one, as if their directions had nothing to do with each other.
-    fn reaches(&self, position: DVec3, limit: f64) -> bool {
-        let (from, to) = (position - self.greatest, position - self.least);
-        let (mut near, mut far) = (0.0f64, limit);
-        for axis in 0..3 {
-            // distance · greatest >= from and distance · least <= to, for the same distance.
-            for (direction, bound) in
-                [(self.greatest_direction[axis], from[axis]), (-self.least_direction[axis], -to[axis])]
-            {
-                let end = bound / direction;
-                if direction > 0.0 {
-                    near = near.max(end);
-                } else if direction < 0.0 {
-                    far = far.min(end);
-                } else if bound > 0.0 {
-                    return false;
-                }
-            }
-        }
-        near <= far
+    ///
+    /// A coordinate x is reached at the distances d for which a corner + d · direction are not all
+    /// on the same side of x: greatest + d · greatest direction >= x >= least + d · least direction.
+    fn contains(&self, position: DVec3, limit: f64) -> bool {
+        let [greatest, least] = [0, 1].map(|end| (position - self.corners[end]) * self.inverse[end]);
+        let [rises, rises_least] = self.inverse.map(|inverse| inverse.cmpgt(DVec3::ZERO));
+        let nothing = (DVec3::NEG_INFINITY, DVec3::INFINITY);
+        let near = DVec3::select(rises, greatest, nothing.0).max(DVec3::select(rises_least, nothing.0, least));
+        let far = DVec3::select(rises, nothing.1, greatest).min(DVec3::select(rises_least, least, nothing.1));
+        near.max_element().max(0.0) <= far.min_element().min(limit)
     }
 }
 
