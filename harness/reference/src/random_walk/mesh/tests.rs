@@ -231,6 +231,34 @@ fn a_sun_behind_a_boundary_is_a_disc_met_by_chance() {
     }
 }
 
+/// The two ends' shares of light that meets more than one surface before its first scattering, and
+/// their product: about what is left out.
+#[test]
+fn hardly_any_light_begins_indirectly_at_both_ends() {
+    for name in ["skin", "skin_bunny", "skin_ring", "wax"] {
+        let scene = named(name);
+        let matter = matter(&scene, Boundary::Dielectric, None).expect("media");
+        let (side, samples) = (32, 64);
+        let view = (&View::new(&scene.camera, side, side), side, side);
+        let lights = (&scene.lights[..], scene.bounds());
+        let pass = |origin: Origin, beginnings| {
+            let pass = Pass { origin, beginnings, seed: 3 };
+            let mut estimate = match origin {
+                Origin::Eye => from_eye(&matter, view, samples, pass, &|| ()),
+                Origin::Lights => from_lights::estimate(&matter, lights, view, samples, pass, &|| ()),
+            };
+            estimate.coverage = vec![1.0; (side * side) as usize];
+            totals(&estimate.rendering())
+        };
+        let (all, _) = pass(Origin::Eye, Beginnings::All);
+        let [lights, eye] = [Origin::Lights, Origin::Eye].map(|origin| pass(origin, Beginnings::Indirect));
+        let share = |(part, error): (DVec3, DVec3)| (100.0 * part / all, 100.0 * error / all);
+        let left_out = (lights.0 / all) * (eye.0 / all);
+        println!("{name}: lights {:.2?} %, eye {:.2?} %, product {left_out}", share(lights), share(eye));
+        assert!(left_out.cmplt(DVec3::splat(1e-3)).all());
+    }
+}
+
 /// Images of different seeds differ by their standard errors and no more: the strata can only help.
 #[test]
 fn errors_are_what_they_are_said_to_be() {

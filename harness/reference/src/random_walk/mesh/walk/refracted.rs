@@ -278,7 +278,7 @@ impl Reach {
 /// the normal's side or is reflected totally.
 fn refracted(incident: DVec3, normal: DVec3, index: f64) -> Option<DVec3> {
     let cosine = -incident.dot(normal);
-    if !(cosine > 0.0) {
+    if cosine.is_nan() || cosine <= 0.0 {
         return None;
     }
     let along = (incident + cosine * normal) / index;
