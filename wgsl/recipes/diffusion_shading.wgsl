@@ -99,9 +99,9 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
         }
     }
     let scale = select(0.0f, 1.0f / max(found.filled, 1e-12f), found.filled > 0.0f);
-    if (!EFFECT_EXTINCTION_PER_VOXEL) {
+    if (!EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
         found.density = found.filled;
-    }
+    }  //+extinction_per_voxel
     return DiffusionSample(scale * found.fluence, scale * found.depth, scale * found.density, found.filled);
 }
 
@@ -301,13 +301,14 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
                     diffusion_local(cosine_eye, cosine, h_eye.y, h_light.y, body.gamma.y, node.y, gap.y),
                     diffusion_local(cosine_eye, cosine, h_eye.z, h_light.z, body.gamma.z, node.z, gap.z),
                 );
-            } else {
+            }
+            if (!EFFECT_DIFFUSION) {  //+diffusion
                 sent += lit * cosine * arrival.irradiance * vec3f(
                     half_space_brdf(cosine_eye, cosine, body.gamma.x),
                     half_space_brdf(cosine_eye, cosine, body.gamma.y),
                     half_space_brdf(cosine_eye, cosine, body.gamma.z),
                 );
-            }
+            }  //+diffusion
             if (EFFECT_MICROFACET) {
                 highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
             }

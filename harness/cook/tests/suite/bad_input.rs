@@ -79,7 +79,11 @@ const RENDER: &[Row] = &[
     ("octahedron --with cdrf --out {}/out.png", One, &["--with cdrf has no meaning", "scattering and absorption"]),
     ("bunny --with cdrf --rung lambert --out {}/out.png", One, &["a rung is asked for"]),
     ("octahedron --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "lit by the environment"]),
-    ("bunny --rung godunov-16 --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "a light sees"]),
+    (
+        "bunny --rung godunov-16 --with shadow --out {}/out.png",
+        One,
+        &["--with shadow has no meaning", "its source sees"],
+    ),
     ("skin --rung reference --with shadow --out {}/out.png", One, &["knows no --with shadow"]),
     ("bunny --with cdrf,optical_path --out {}/out.png", One, &["by one of them"]),
     ("bunny --with fog --out {}/out.png", Usage, &["--with", "shadow"]),
@@ -125,7 +129,6 @@ const RENDER: &[Row] = &[
         One,
         &["nothing there is drawn by the reference of scattering bodies"],
     ),
-    ("jade_ring --size 8x8 --rung reference --boundary dielectric --out {}/out.png", One, &["light 1 has no size"]),
     ("octahedron --rung convex-1 --centre paper --out {}/out.png", One, &["nothing there is drawn by the proxy"]),
     (
         "octahedron --rung proxy-1 --strength 2 --out {}/out.png",
