@@ -22,6 +22,15 @@ pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
     ((other - nearer).max(0.0) / other).sqrt()
 }
 
+/// Returns the root mean square distance of linear radiance from `truth`, divided by the root mean
+/// square of `truth`, as both are.
+#[must_use]
+pub fn distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
+    let [both, own, other] = products(found, truth);
+    let square = (own - 2.0 * both + other) / other;
+    if square.is_nan() { f64::INFINITY } else { square.max(0.0).sqrt() }
+}
+
 /// Returns the sums of a b, a a and b b over the colour channels of all pixels.
 fn products(found: &[[f32; 4]], truth: &[[f32; 4]]) -> [f64; 3] {
     let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
@@ -50,5 +59,7 @@ mod tests {
             (exposed_distance(&[[0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 1.0, 1.0]], &truth).powi(2) - 7.0 / 9.0).abs() < 1e-12
         );
         assert_eq!(exposed_distance(&[[0.0; 4]; 2], &truth), 1.0);
+        assert_eq!([distance(&[[0.0; 4]; 2], &truth), distance(&truth, &truth)], [1.0, 0.0]);
+        assert!((distance(&brighter, &truth) - 2.0).abs() < 1e-12);
     }
 }

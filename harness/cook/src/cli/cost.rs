@@ -4,6 +4,7 @@ use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
 use lapidary_cook::cost::{
     CostError, Ladder, Options, Progress, Report, cdrf, effects, optical_path, outside, page, restraint, sphere,
+    translucent,
 };
 use lapidary_cook::text_file;
 use lapidary_gpu::Gpu;
@@ -35,6 +36,9 @@ enum Technique {
     Cdrf(Rungs),
     /// Ladder of optical paths through stone, by solver, neighbours and grid size. Takes minutes.
     OpticalPath(Rungs),
+    /// Ladder of bodies through which light comes: optical paths and diffusion beside random walks.
+    /// Takes minutes.
+    Translucent(Rungs),
     /// Cost of each effect alone, of none, and of all: time, instructions and bytes.
     Effects(Timed),
     /// What light that leaves a stone meets: the environment, the picture, or bounds of other bodies;
@@ -69,8 +73,8 @@ struct Shown {
 
 #[derive(clap::Args)]
 struct Timed {
-    /// Rounds of timing; 0 skips timing, except for restraint. 7 by default, 5 for optical_path and
-    /// restraint.
+    /// Rounds of timing; 0 skips timing, except for restraint. 7 by default, 5 for optical_path,
+    /// translucent and restraint.
     #[arg(long, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: Option<u32>,
     #[command(flatten)]
@@ -136,6 +140,17 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let options = Options { rungs, ..timed(cdrf::options(), arguments.timed.rounds) };
             let measure = |gpu: &Gpu, progress: Progress<'_>| cdrf::run(gpu, &options, progress);
             show(&cdrf::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+        }
+        Technique::Translucent(arguments) => {
+            let comes_through = |rung: &Rung| match rung {
+                Rung::Diffuse(reflectance) => reflectance.is_lambert(),
+                other => matches!(other, Rung::OpticalPath(_) | Rung::Diffusion(_)),
+            };
+            if let Some(other) = arguments.rungs.iter().find(|rung| !comes_through(rung)) {
+                let names = translucent::RUNGS.join(", ");
+                return Err(Failure(format!("`translucent` has no rung {other}; there are {names}")));
+            }
+            arguments.show(context, &translucent::LADDER, translucent::options(), translucent::run)
         }
         Technique::OpticalPath(arguments) => {
             let draws_stone = |rung: &Rung| match rung {

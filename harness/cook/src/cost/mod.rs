@@ -17,6 +17,7 @@ pub mod restraint;
 pub mod sphere;
 pub mod table;
 mod timing;
+pub mod translucent;
 
 pub use plot::Plot;
 pub use report::{Report, Row};
@@ -54,12 +55,13 @@ pub struct Ladder {
 }
 
 /// All ladders.
-pub const LADDERS: [Ladder; 7] = [
+pub const LADDERS: [Ladder; 8] = [
     gem::LADDER,
     cdrf::LADDER,
     optical_path::LADDER,
     effects::LADDER,
     outside::LADDER,
+    translucent::LADDER,
     restraint::LADDER,
     sphere::LADDER,
 ];

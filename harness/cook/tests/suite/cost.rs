@@ -174,6 +174,7 @@ fn the_pages_show_the_record() {
         ("optical_path", &["optical_path_ladder.md"]),
         ("effects", &["plan.md"]),
         ("outside", &["gem.md"]),
+        ("translucent", &["diffusion.md"]),
         ("restraint", &["gem.md", "optical_path.md", "plan.md"]),
         ("sphere", &["cdrf.md"]),
     ];

@@ -12,7 +12,8 @@ use super::{CostError, Ladder, Options, Progress, Report};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_scene::solver::{Method, Paths};
-use walks::Walks;
+pub(super) use views::settings;
+pub(super) use walks::Walks;
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -78,10 +79,10 @@ pub fn options() -> Options {
 
 /// The settings that a row of the ladder is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Measured {
-    rung: Rung,
+pub(super) struct Measured {
+    pub(super) rung: Rung,
     /// Whether the cost is the full extinction.
-    unscaled: bool,
+    pub(super) unscaled: bool,
 }
 
 impl Measured {

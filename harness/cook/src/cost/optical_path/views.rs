@@ -82,7 +82,11 @@ impl View {
 
 /// Returns settings for one sample per pixel, lit by the scene's lights alone, without reflections.
 /// The ball has the extinction of its closed form.
-pub(super) fn settings(view: &str, Measured { rung, unscaled }: Measured, [width, height]: [u32; 2]) -> Settings {
+pub(in crate::cost) fn settings(
+    view: &str,
+    Measured { rung, unscaled }: Measured,
+    [width, height]: [u32; 2],
+) -> Settings {
     Settings {
         rung,
         samples: 1,

@@ -4,7 +4,7 @@
 use super::Measured;
 use super::views::{SIDE, settings};
 use crate::cost::CostError;
-use crate::exposure::exposed_distance;
+use crate::exposure::{best_exposure, distance, exposed_distance};
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WalkedReference};
 use lapidary_gpu::Gpu;
@@ -18,7 +18,7 @@ use lapidary_scene::Scene;
 const FEW: u32 = 4;
 
 /// A scene and its committed picture by random walks.
-pub(super) struct Walks {
+pub(in crate::cost) struct Walks {
     name: &'static str,
     scene: Scene,
     linear: Vec<[f32; 4]>,
@@ -30,7 +30,7 @@ pub(super) struct Walks {
 impl Walks {
     /// Returns the picture of the built-in scene with that name, in its own colours; `None` if no
     /// picture of it is committed.
-    pub(super) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
+    pub(in crate::cost) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
         let Some(reference) = WalkedReference::of_scene(name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
         Ok(Some(Self { name, scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
@@ -40,11 +40,19 @@ impl Walks {
     /// four pixels of one sample each are averaged into one. For the reference, returns this
     /// picture's own standard error.
     pub(super) fn distance(&self, gpu: &Gpu, of: Measured) -> Result<f64, CostError> {
+        Ok(self.distances(gpu, of)?[0])
+    }
+
+    /// Returns the distance after the best exposure, that as both are, and the best exposure. For the
+    /// reference, this picture's own standard error.
+    pub(in crate::cost) fn distances(&self, gpu: &Gpu, of: Measured) -> Result<[f64; 3], CostError> {
         if of.rung == Rung::Reference {
-            return self.standard_error();
+            let error = self.standard_error()?;
+            return Ok([error, error, 1.0]);
         }
-        let picture = render::render(gpu, &self.scene, &settings(self.name, of, [SIDE; 2]))?;
-        Ok(exposed_distance(&halved(&picture).linear, &self.linear))
+        let picture = halved(&render::render(gpu, &self.scene, &settings(self.name, of, [SIDE; 2]))?).linear;
+        let truth = &self.linear;
+        Ok([exposed_distance(&picture, truth), distance(&picture, truth), best_exposure(&picture, truth)])
     }
 
     /// Returns the root mean square of the pixels' standard errors, divided by the root mean square
