@@ -173,9 +173,10 @@ fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
             holder = vec3u(clamp(position - 0.5f * triangle.normal, vec3f(0.0f), vec3f(f32(last))));
         }
         atomicAdd(&areas[diffusion_index(holder)], area);
-        for (var neighbour = 0u; neighbour < 27u; neighbour++) {
+        let corner = vec3i(floor(position - 0.5f));
+        for (var neighbour = 0u; neighbour < 8u; neighbour++) {
             // Values below 0 wrap around.
-            let near = voxel + vec3u(neighbour % 3u, (neighbour / 3u) % 3u, neighbour / 9u) - 1u;
+            let near = vec3u(corner + vec3i(i32(neighbour & 1u), i32((neighbour >> 1u) & 1u), i32(neighbour >> 2u)));
             if (any(near > vec3u(last))) {
                 continue;
             }

@@ -17,8 +17,8 @@ override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 // Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
 
-// The way inside is cut where its optical depth is 0, .25, .75, 1.5, 2.5, 4 and 6.
-const DIFFUSION_PIECES: u32 = 6u;
+// The way inside is cut where its optical depth is 0, .4, 1.2, 2.5 and 5.
+const DIFFUSION_PIECES: u32 = 4u;
 
 struct DiffusionView {
     clip_from_world: mat4x4f,
@@ -38,6 +38,8 @@ struct DiffusionBody {
     alpha: f32,
     // The irradiance that counts as 1.
     largest: vec3f,
+    // Chandrasekhar's H function along the normal, in each channel.
+    h_normal: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> view: DiffusionView;
@@ -120,17 +122,17 @@ fn diffusion_below(found: DiffusionSample, depth: f32) -> vec3f {
 // was scattered before.
 struct DiffusionWay {
     // Positions, and the length of the way up to there in voxel spacings.
-    ends: array<vec4f, 7>,
-    densities: array<f32, 7>,
+    ends: array<vec4f, 5>,
+    densities: array<f32, 5>,
     // Radiance towards the eye for an albedo of 4 pi.
     scattered: vec3f,
     // Mean depth of the nodes about the first point, in voxel spacings.
     depth: f32,
 }
 
-fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32) -> DiffusionWay {
+fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: vec3f) -> DiffusionWay {
     // The same places for all channels.
-    var depths = array<f32, 7>(0.0f, 0.25f, 0.75f, 1.5f, 2.5f, 4.0f, 6.0f);
+    var depths = array<f32, 5>(0.0f, 0.4f, 1.2f, 2.5f, 5.0f);
     let least = min(body.extinction.x, min(body.extinction.y, body.extinction.z));
     let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
     let extinction = sqrt(least * most);
@@ -159,7 +161,11 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32) -> Diff
                 way = mix(before, way, share);
                 found = diffusion_sample(start - way * toward_eye);
                 found.density = 0.0f;
-                below = 0.0f;
+            }
+            if (end > 0u) {
+                // Towards the far side the fluence falls again, by about how much of the space is filled.
+                let full = found.filled / max(fullest, 1e-6f);
+                below = min(below, max(0.75f * (2.0f * full - 1.0f), 0.0f) / max(1.001f - full, 1e-3f));
             }
             filled = found.filled;
             inside.densities[end] = found.density;
@@ -182,12 +188,10 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32) -> Diff
     if (inside.densities[DIFFUSION_PIECES] > 0.0f) {
         scattered += exp(-gone) * near;
     }
-    let h_eye = diffusion_h(cosine_eye);
-    let h_normal = diffusion_h(1.0f);
     inside.scattered = body.largest * scattered * vec3f(
-        diffusion_angle(cosine_eye, h_eye.x, h_normal.x, DIFFUSION_MILNE),
-        diffusion_angle(cosine_eye, h_eye.y, h_normal.y, DIFFUSION_MILNE),
-        diffusion_angle(cosine_eye, h_eye.z, h_normal.z, DIFFUSION_MILNE),
+        diffusion_angle(cosine_eye, h_eye.x, body.h_normal.x, DIFFUSION_MILNE),
+        diffusion_angle(cosine_eye, h_eye.y, body.h_normal.y, DIFFUSION_MILNE),
+        diffusion_angle(cosine_eye, h_eye.z, body.h_normal.z, DIFFUSION_MILNE),
     );
     return inside;
 }
@@ -263,7 +267,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
     var gap = vec3f(0.0f);
     let h_eye = diffusion_h(cosine_eye);
     if (EFFECT_DIFFUSION) {
-        inside = diffusion_inside(input.position, toward_eye, cosine_eye);
+        inside = diffusion_inside(input.position, toward_eye, cosine_eye, h_eye);
         sent = 0.07957747f * albedo * inside.scattered;
         // The two nodes below the point, of whose distances the local part is made.
         let start = voxelization_local(body.grid, input.position);

@@ -36,28 +36,21 @@ struct DiffusionLevel {
 @group(0) @binding(2) var<storage, read_write> workgroups: array<atomic<u32>, 3>;
 @group(0) @binding(3) var<storage, read_write> faces: array<f32>;
 @group(0) @binding(4) var<storage, read_write> reactions: array<vec4f>;
-@group(0) @binding(5) var<storage, read_write> fluence: array<f32>;
-@group(0) @binding(6) var<storage, read_write> right: array<f32>;
+// Fluence and the equations' right side in each channel; the fourth number is not used.
+@group(0) @binding(5) var<storage, read_write> fluence: array<vec4f>;
+@group(0) @binding(6) var<storage, read_write> right: array<vec4f>;
 // Of the next finer level.
 @group(1) @binding(0) var<storage, read> finer_faces: array<f32>;
 @group(1) @binding(1) var<storage, read> finer_reactions: array<vec4f>;
 // Of the next coarser level.
-@group(1) @binding(2) var<storage, read_write> coarser_fluence: array<f32>;
-@group(1) @binding(3) var<storage, read_write> coarser_right: array<f32>;
+@group(1) @binding(2) var<storage, read_write> coarser_fluence: array<vec4f>;
+@group(1) @binding(3) var<storage, read_write> coarser_right: array<vec4f>;
 // Words of the part diffusion_nodes, and those of the part diffusion_packed.
 @group(1) @binding(4) var<storage, read> nodes: array<u32>;
 @group(1) @binding(5) var<storage, read_write> packed: array<vec2u>;
 
 fn diffusion_index(cell: vec3u, cells: u32) -> u32 {
     return cell.x + cells * (cell.y + cells * cell.z);
-}
-
-fn diffusion_of_cell(index: u32) -> vec3f {
-    return vec3f(fluence[3u * index], fluence[3u * index + 1u], fluence[3u * index + 2u]);
-}
-
-fn diffusion_right(index: u32) -> vec3f {
-    return vec3f(right[3u * index], right[3u * index + 1u], right[3u * index + 2u]);
 }
 
 @compute @workgroup_size(64)
@@ -124,13 +117,13 @@ fn diffusion_across(cell: vec3u, index: u32) -> DiffusionFaces {
     for (var axis = 0u; axis < 3u; axis++) {
         let above = faces[3u * index + axis];
         if (above > 0.0f) {
-            sums.inflow += above * diffusion_of_cell(index + stride);
+            sums.inflow += above * fluence[index + stride].xyz;
             sums.conductances += above;
         }
         if (cell[axis] > 0u) {
             let below = faces[3u * (index - stride) + axis];
             if (below > 0.0f) {
-                sums.inflow += below * diffusion_of_cell(index - stride);
+                sums.inflow += below * fluence[index - stride].xyz;
                 sums.conductances += below;
             }
         }
@@ -154,16 +147,19 @@ fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_inv
         return;
     }
     let across = diffusion_across(cell, index);
-    for (var channel = 0u; channel < 3u; channel++) {
-        let load = right[3u * index + channel];
-        fluence[3u * index + channel] = diffusion_relax(load, across.inflow[channel], across.conductances, reaction[channel]);
-    }
+    let load = right[index];
+    fluence[index] = vec4f(
+        diffusion_relax(load.x, across.inflow.x, across.conductances, reaction.x),
+        diffusion_relax(load.y, across.inflow.y, across.conductances, reaction.y),
+        diffusion_relax(load.z, across.inflow.z, across.conductances, reaction.z),
+        0.0f,
+    );
 }
 
 // What is left of a cell's equations.
 fn diffusion_residual(cell: vec3u, index: u32) -> vec3f {
     let across = diffusion_across(cell, index);
-    return diffusion_right(index) + across.inflow - (across.conductances + reactions[index].xyz) * diffusion_of_cell(index);
+    return right[index].xyz + across.inflow - (across.conductances + reactions[index].xyz) * fluence[index].xyz;
 }
 
 // Hands what is left of this level's equations to the coarser level, whose fluence begins as 0. A
@@ -186,10 +182,8 @@ fn diffusion_solve_restrict(@builtin(workgroup_id) group: vec3u, @builtin(local_
         }
     }
     let parent = diffusion_index(corner / 2u, (level.cells + 1u) / 2u);
-    for (var channel = 0u; channel < 3u; channel++) {
-        coarser_right[3u * parent + channel] = left[channel];
-        coarser_fluence[3u * parent + channel] = 0.0f;
-    }
+    coarser_right[parent] = vec4f(left, 0.0f);
+    coarser_fluence[parent] = vec4f(0.0f);
 }
 
 // Adds the coarser level's correction.
@@ -202,9 +196,7 @@ fn diffusion_solve_prolong(@builtin(workgroup_id) group: vec3u, @builtin(local_i
     let index = diffusion_index(cell, level.cells);
     let parent = diffusion_index(cell / 2u, (level.cells + 1u) / 2u);
     if (reactions[index].w > 0.0f) {
-        for (var channel = 0u; channel < 3u; channel++) {
-            fluence[3u * index + channel] += coarser_fluence[3u * parent + channel];
-        }
+        fluence[index] += coarser_fluence[parent];
     }
 }
 
@@ -215,5 +207,5 @@ fn diffusion_solve_pack(@builtin(workgroup_id) group: vec3u, @builtin(local_invo
         return;
     }
     let index = diffusion_index(cell, level.cells);
-    packed[index] = diffusion_pack(diffusion_of_cell(index), nodes[index]);
+    packed[index] = diffusion_pack(fluence[index].xyz, nodes[index]);
 }

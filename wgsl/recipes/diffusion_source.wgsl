@@ -6,7 +6,7 @@
 // parts: lights, light_views, diffusion_nodes
 //
 // Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map,
-// then diffusion_source_finish with one for each of the three numbers of each voxel.
+// then diffusion_source_finish with any number of workgroups.
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -15,8 +15,8 @@ override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 // Light that fills one voxel's face, as a number of units. Light is added up in whole numbers, so that
 // its order makes no difference; sixteen times as much on every side of a voxel still fits.
 const DIFFUSION_LIGHT: f32 = 16777216.0f;
-// Rays end at this optical depth, where 1e-4 of the light is left.
-const DIFFUSION_RAY_DEPTH: f32 = 9.0f;
+// Rays end at this optical depth, where 1e-3 of the light is left.
+const DIFFUSION_RAY_DEPTH: f32 = 7.0f;
 
 struct DiffusionSource {
     grid: VoxelizationGrid,
@@ -37,8 +37,8 @@ struct DiffusionSource {
 // The grid of half the spacing, a bit for each voxel, in rows along x.
 @group(1) @binding(2) var<storage, read> fine: array<u32>;
 @group(1) @binding(3) var<storage, read> density: array<f32>;
-// The right side of the equations, three numbers for each voxel.
-@group(1) @binding(4) var<storage, read_write> right: array<f32>;
+// The right side of the equations, a number for each channel.
+@group(1) @binding(4) var<storage, read_write> right: array<vec4f>;
 
 // The eight nodes around a point, and their shares in what lies between them.
 struct DiffusionAround {
@@ -130,8 +130,9 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
             let voxel = vec3u(clamp(entry - (way + 1e-3f) * arrival.direction, vec3f(0.0f), vec3f(f32(cells - 1u))));
             local = density[voxel.x + cells * (voxel.y + cells * voxel.z)];
         }
-        let length = min(0.5f, 0.5f / max(densest * local, 1e-6f));
-        let middle = way + 0.5f * length;
+        let length = min(0.5f, 1.0f / max(densest * local, 1e-6f));
+        // Where the mean of what is scattered along the step lies.
+        let middle = way + length * (0.5f - 0.083f * densest * local * length);
         let place = entry - middle * arrival.direction;
         let inside = diffusion_filled(place);
         entered = entered || inside;
@@ -163,8 +164,16 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
 
 @compute @workgroup_size(64)
 fn diffusion_source_finish(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let all = 3u * source.grid.cells * source.grid.cells * source.grid.cells;
-    for (var place = invocation.x; place < all; place += 64u * groups.x) {
-        right[place] = 3.0f * source.extinction[place % 3u] * (f32(atomicLoad(&loads[place])) / DIFFUSION_LIGHT);
+    let all = source.grid.cells * source.grid.cells * source.grid.cells;
+    for (var voxel = invocation.x; voxel < all; voxel += 64u * groups.x) {
+        if (nodes[voxel] == 0u) {
+            continue;
+        }
+        let load = vec3f(vec3u(
+            atomicLoad(&loads[3u * voxel]),
+            atomicLoad(&loads[3u * voxel + 1u]),
+            atomicLoad(&loads[3u * voxel + 2u]),
+        ));
+        right[voxel] = vec4f(3.0f * source.extinction * load / DIFFUSION_LIGHT, 0.0f);
     }
 }

@@ -193,7 +193,8 @@ fn record_of(grid: VoxelGrid, material: &Material, matter: Matter, largest: Vec3
     let record = Record::new("DiffusionBody").within("grid", |record| grid.fill(record));
     let record = record.with("extinction", matter.extinction).with("index", material.ior);
     let record = record.with("gamma", matter.gamma).with("alpha", material.roughness * material.roughness);
-    record.with("largest", largest)
+    let h_normal = matter.gamma.map(|gamma| lapidary_half_space::h(1.0, gamma));
+    record.with("largest", largest).with("h_normal", h_normal)
 }
 
 impl Diffusions {

@@ -105,12 +105,12 @@ impl Levels {
         Ok(Self { levels: made, options, fresh, packed, coarsen, list, cycle, pack })
     }
 
-    /// The right side of the finest level's equations: three f32 for each voxel.
+    /// The right side of the finest level's equations: four f32 for each voxel.
     pub(super) fn right(&self) -> Buffer {
         self.levels[0].right
     }
 
-    /// The fluence of the finest level: three f32 for each voxel.
+    /// The fluence of the finest level: four f32 for each voxel.
     #[cfg(test)]
     pub(super) fn fluence(&self) -> Buffer {
         self.levels[0].fluence
@@ -163,8 +163,8 @@ fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells)
         builder.buffer(&format!("{what} of level {number}"), bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)
     };
     let tiles = storage("tiles", 4 * u64::from(side.div_ceil(TILE)).pow(3));
-    let fluence = storage("fluence", 12 * voxels);
-    let right = storage("right side", 12 * voxels);
+    let fluence = storage("fluence", 16 * voxels);
+    let right = storage("right side", 16 * voxels);
     let (faces, reactions) = if number == 0 {
         (cells.faces, cells.reactions)
     } else {

@@ -78,10 +78,10 @@ impl Lone {
 
     /// Solves for a grey right side, one number for each voxel.
     fn solve(&self, right: &[f64]) -> Vec<f64> {
-        let spread: Vec<f32> = right.iter().flat_map(|value| [*value as f32; 3]).collect();
+        let spread: Vec<f32> = right.iter().flat_map(|value| [*value as f32; 4]).collect();
         self.executor.write_buffer(self.right, bytemuck::cast_slice(&spread)).expect("written");
         self.executor.run(|_, _| {}).expect("run");
-        self.floats(self.fluence).chunks_exact(3).map(|of| of[0]).collect()
+        self.floats(self.fluence).chunks_exact(4).map(|of| of[0]).collect()
     }
 
     /// Returns what is left of the equations, over the right side, both as root mean squares; and the
@@ -205,29 +205,4 @@ fn islands_and_matter_that_loses_nothing_have_finite_light() {
     let fluence = lone.solve(&everywhere(&lone, 1e6));
     assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0));
     assert!(fluence.iter().any(|value| *value > 0.0));
-}
-
-#[test]
-fn scratch_profile() {
-    for name in ["bunny", "dragon"] {
-        let scene = lapidary_scene::Scene::named(name).expect("scene");
-        for rung in ["diffusion-64", "diffusion-128"] {
-            let settings = crate::Settings {
-                rung: rung.parse().expect("rung"),
-                samples: 1,
-                without: lapidary_plan::Effects::of(&[Effect::Environment]).and(lapidary_plan::Effects::SHEEN),
-                ..crate::Settings::of_size(512, 512)
-            };
-            let frame = crate::FrameTimer::new(gpu(), &scene, &settings, None, false).expect("timer");
-            frame.run().expect("run");
-            let mut least = [f64::INFINITY; 5];
-            for _ in 0..4 {
-                let times = frame.run_stages().expect("run").expect("stages");
-                for (l, t) in least.iter_mut().zip(times) {
-                    *l = l.min(1e3 * t.as_secs_f64());
-                }
-            }
-            println!("{name} {rung}: voxels {:.1} maps {:.1} source {:.1} solve {:.1} shade {:.1}", least[0], least[1], least[2], least[3], least[4]);
-        }
-    }
 }

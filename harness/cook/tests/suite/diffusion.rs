@@ -1,0 +1,121 @@
+//! Diffusion through bodies, in whole pictures: near random walks, linear in the light, without the
+//! grid's pattern.
+
+use glam::{DQuat, DVec3, Vec3};
+use lapidary_cook::exposure::{distance, exposed_distance};
+use lapidary_cook::snapshot::frames::halved;
+use lapidary_cook::snapshot::{EXR_SIDE, WalkedReference};
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::surfaces::{rounded_box, sphere};
+use lapidary_scene::{Light, Material, Medium, Mesh, Object, Scene};
+
+fn drawn(scene: &Scene, rung: &str, side: u32) -> Picture {
+    let settings = Settings {
+        rung: rung.parse().expect(rung),
+        samples: 1,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
+        ..Settings::of_size(side, side)
+    };
+    render::render(super::gpu(), scene, &settings).expect("rendered")
+}
+
+/// Returns a body of this matter under some lights, seen at these angles.
+fn scene_of(mesh: Mesh, medium: Medium, lights: Vec<Light>, (polar, azimuth): (f32, f32)) -> Scene {
+    let mut scene = Scene::named("bunny").expect("built in");
+    let material = Material { medium: Some(medium), ..scene.objects[0].material.clone() };
+    scene.objects = vec![Object::new("body", mesh, material)];
+    scene.lights = lights;
+    scene.seen_from(polar, azimuth)
+}
+
+fn sun(toward: Vec3, irradiance: Vec3) -> Light {
+    Light::Directional { toward: toward.normalize(), irradiance }
+}
+
+/// The goals of docs/diffusion.md: the share of the distance of Lambert's law with shadows, at the
+/// best exposures and at exposure 1.
+#[test]
+fn pictures_are_nearer_to_random_walks_than_lambert_with_shadows_by_half() {
+    for reference in WalkedReference::of("optical_path") {
+        let truth = reference.picture(super::gpu()).expect(reference.scene).linear;
+        let scene = Scene::named(reference.scene).expect("built in");
+        let distances = |rung: &str| {
+            let picture = halved(&drawn(&scene, rung, 2 * EXR_SIDE)).linear;
+            [exposed_distance(&picture, &truth), distance(&picture, &truth)]
+        };
+        let lambert = distances("lambert-shadowed");
+        for (rung, most) in [("diffusion-64", 0.6), ("diffusion-128", 0.5)] {
+            let found = distances(rung);
+            let [best, one] = [0, 1].map(|place| found[place] / lambert[place]);
+            println!("{}, {rung}: {best:.2} and {one:.2} of Lambert's distance", reference.scene);
+            assert!(best <= most && one <= most, "{}, {rung}: {best} {one}", reference.scene);
+        }
+    }
+}
+
+#[test]
+fn light_adds_up_and_absorption_only_darkens() {
+    let medium = |absorption: f32| Medium::isotropic(Vec3::new(6.0, 4.0, 8.0), absorption * Vec3::new(1.0, 2.0, 0.5));
+    let lights = [
+        sun(Vec3::new(1.0, 0.5, 0.2), Vec3::new(1.0, 0.4, 0.2)),
+        Light::Point { position: Vec3::new(-1.5, 1.0, 1.0), intensity: Vec3::new(0.5, 1.0, 2.0) },
+    ];
+    let picture = |lights: Vec<Light>, absorption: f32| {
+        drawn(&scene_of(sphere(1.0, 64), medium(absorption), lights, (80.0, 10.0)), "diffusion-32", 64).linear
+    };
+    let [one, other] = lights.map(|light| picture(vec![light], 0.02));
+    let both = picture(lights.to_vec(), 0.02);
+    let brightest = both.iter().flat_map(|pixel| &pixel[..3]).fold(0.0f32, |most, value| most.max(*value));
+    let mut worst = 0.0f32;
+    for ((both, one), other) in both.iter().zip(&one).zip(&other) {
+        for channel in 0..3 {
+            worst = worst.max((both[channel] - one[channel] - other[channel]).abs());
+        }
+    }
+    // Fluence is kept to 16 bits of its fourth root, and light in whole units.
+    assert!(worst < 2e-3 * brightest, "{worst} of {brightest}");
+    // What the grid does not resolve is that of a half space, whose light depends on absorption more
+    // than a ball's: at the limb absorption may make it brighter by some hundredths.
+    for absorption in [0.04, 0.4] {
+        let darker = picture(lights.to_vec(), absorption);
+        for channel in 0..3 {
+            let sum = |picture: &[[f32; 4]]| picture.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>();
+            assert!(sum(&darker) < sum(&both), "{absorption}, {channel}");
+            for (clear, dark) in both.iter().zip(&darker) {
+                assert!(dark[channel] <= 1.05 * clear[channel], "{dark:?} {clear:?}");
+            }
+        }
+    }
+}
+
+/// A thin wall, aslant in the grid and lit from behind, is as bright everywhere; a grid that showed
+/// would make stripes.
+#[test]
+fn a_thin_wall_lit_from_behind_shows_no_voxels() {
+    let turn = DQuat::from_rotation_y(0.35) * DQuat::from_rotation_x(0.25);
+    let wall = rounded_box(DVec3::new(1.0, 1.0, 0.03), 0.01, 2).placed(turn, DVec3::ZERO);
+    let medium = Medium::isotropic(Vec3::splat(12.0), Vec3::splat(0.01));
+    let normal = (turn * DVec3::Z).as_vec3();
+    let lights = vec![sun(-normal, Vec3::ONE)];
+    let scene = scene_of(wall, medium, lights, (90.0, 0.0));
+    let side = 128;
+    let spread = |rung: &str| {
+        let picture = drawn(&scene, rung, side).linear;
+        // The middle of the wall, where its edges do not show.
+        let middle = (side / 4)..(3 * side / 4);
+        let values: Vec<f64> = middle
+            .clone()
+            .flat_map(|y| middle.clone().map(move |x| (y * side + x) as usize))
+            .map(|place| f64::from(picture[place][1]))
+            .collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        assert!(mean > 0.0, "{rung}: black");
+        square.sqrt() / mean
+    };
+    let [paths, coarse, fine] = ["godunov-64", "diffusion-32", "diffusion-64"].map(spread);
+    println!("spread over the wall: godunov-64 {paths:.3}, diffusion-32 {coarse:.3}, diffusion-64 {fine:.3}");
+    assert!(fine < 0.05 && coarse < 0.1, "{coarse} {fine}");
+}
