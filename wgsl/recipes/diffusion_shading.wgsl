@@ -226,8 +226,9 @@ fn diffusion_way(layer: u32, position: vec3f, toward_light: vec3f) -> f32 {
 }
 
 // Light that is scattered towards the eye for the first time, along the way inside: radiance for an
-// irradiance of 1 and an albedo of 4 pi.
-fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, inside: DiffusionWay) -> vec3f {
+// irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
+// light that meets the first point.
+fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
     var ends = inside.ends;
     var densities = inside.densities;
     var sum = vec3f(0.0f);
@@ -236,6 +237,9 @@ fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, inside: Diffusion
     var thick = body.extinction * densities[0];
     for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
         var way = diffusion_way(layer, ends[end].xyz, toward_light);
+        // A texel spans much of the surface's height where light grazes it; a lit surface counts as flat there.
+        let flat = ends[end].w * cosines.x / max(cosines.y, 0.02f);
+        way = mix(way, flat, lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y)));
         way = select(way, way * (1.0f - lit), end == 0u);
         let far = min(body.extinction * (densities[end] * way), vec3f(30.0f));
         if (end > 0u) {
@@ -295,7 +299,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         counted = light;
         let lit = select(0.0f, visible, cosine > 0.0f);
         if (EFFECT_DIFFUSION) {
-            sent += 0.07957747f * albedo * arrival.irradiance * diffusion_single(layer, arrival.direction, lit, inside);
+            sent += 0.07957747f * albedo * arrival.irradiance * diffusion_single(layer, arrival.direction, lit, vec2f(cosine_eye, cosine), inside);
         }
         if (lit > 0.0f) {
             if (EFFECT_DIFFUSION) {

@@ -47,7 +47,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 48] = [
+pub const SHOTS: [Shot; 51] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -185,6 +185,13 @@ pub const SHOTS: [Shot; 48] = [
     stone("bunny", "Marble: the bunny, light from the left"),
     stone("dragon", "Veined jade: the dragon, light from behind"),
     stone("figure", "Marble: a winged figure, light from behind"),
+    Shot {
+        paragraph: "The same by diffusion: light spreads on from every scattering, and not along the one way that loses least. Against \
+            random walks it leaves half of what optical paths leave.",
+        ..diffused("bunny_diffusion", "Marble by diffusion: the bunny, light from the left", "bunny")
+    },
+    diffused("dragon_diffusion", "Veined jade by diffusion: the dragon, light from behind", "dragon"),
+    diffused("figure_diffusion", "Marble by diffusion: a winged figure, light from behind", "figure"),
     Shot { curvature: Curvature::Vertex, ..bright("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate") },
 ];
 
@@ -227,6 +234,11 @@ const fn by_lights(name: &'static str, title: &'static str, scene: &'static str,
 /// Returns a shot of light through the body, along optical paths.
 const fn stone(name: &'static str, title: &'static str) -> Shot {
     Shot { lights_alone: true, exposure: LIGHTS_ALONE, ..shot(name, title, name, "godunov-128") }
+}
+
+/// Returns a shot of light that diffuses through the body.
+const fn diffused(name: &'static str, title: &'static str, scene: &'static str) -> Shot {
+    Shot { lights_alone: true, exposure: LIGHTS_ALONE, ..shot(name, title, scene, "diffusion-128") }
 }
 
 const fn face_up(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
@@ -283,6 +295,7 @@ impl Shot {
         folder(match self.settings(1).rung {
             Rung::Diffuse(_) => "cdrf",
             Rung::OpticalPath(_) => "optical_path",
+            Rung::Diffusion(_) => "diffusion",
             _ => "gem",
         })
     }
