@@ -93,7 +93,7 @@ fn diffusion_fluence_naive(depth: f32, cosine_light: f32, gamma: f32) -> f32 {
 // interval, and what the exact law adds to diffusion.
 // Returns: bubble + bubble + Chandrasekhar's law less diffusion's.
 // Units: as diffusion_local.
-// Domain: cosines in [0.2, 1], h in [2.8, 3], gamma in [0.1, 0.4], depth in [2, 4], gap in [1, 2].
+// Domain: cosines in [0.2, 1], h in [2.8, 3], gamma in [0.1, 0.4], depth in [0.5, 4], gap in [0.3, 2].
 // Outside: infinite factors where kappa m0 = 1; 0 / 0 for a gap or a cosine of 0.
 // Accuracy: naive
 fn diffusion_local_naive(cosine_eye: f32, cosine_light: f32, h_eye: f32, h_light: f32, gamma: f32, depth: f32, gap: f32) -> f32 {

@@ -104,7 +104,9 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
     if (!EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
         found.density = found.filled;
     }  //+extinction_per_voxel
-    return DiffusionSample(scale * found.fluence, scale * found.depth, scale * found.density, found.filled);
+    // A density of 0 stands for no matter.
+    let density = select(0.0f, max(scale * found.density, DIFFUSION_THINNEST), found.filled > 0.0f);
+    return DiffusionSample(scale * found.fluence, scale * found.depth, density, found.filled);
 }
 
 // The fluence at a depth below the surface: between the surface and the nodes it falls linearly, to 0
@@ -133,9 +135,10 @@ struct DiffusionWay {
 fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: vec3f) -> DiffusionWay {
     // The same places for all channels.
     var depths = array<f32, 5>(0.0f, 0.4f, 1.2f, 2.5f, 5.0f);
-    let least = min(body.extinction.x, min(body.extinction.y, body.extinction.z));
     let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
-    let extinction = sqrt(least * most);
+    // A channel that scatters nothing has nothing to integrate.
+    let scattering = select(vec3f(most), body.extinction, body.gamma < vec3f(1.0f));
+    let extinction = sqrt(min(scattering.x, min(scattering.y, scattering.z)) * most);
     let start = voxelization_local(body.grid, position);
     var inside: DiffusionWay;
     var scattered = vec3f(0.0f);
@@ -157,8 +160,23 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: 
             fullest = max(fullest, found.filled);
             if (end > 0u && found.filled < 0.5f * fullest) {
                 // The way leaves the body about where the space is half as full as inside.
-                let share = clamp((filled - 0.5f * fullest) / (filled - found.filled), 0.0f, 1.0f);
-                way = mix(before, way, share);
+                let half_full = 0.5f * fullest;
+                var inner = before;
+                var outer = way;
+                var beyond = found.filled;
+                // Between points further apart than nodes, it is searched for first.
+                for (var turn = 0u; turn < 6u && outer - inner > 1.0f; turn++) {
+                    let middle = diffusion_sample(start - 0.5f * (inner + outer) * toward_eye).filled;
+                    if (middle < half_full) {
+                        outer = 0.5f * (inner + outer);
+                        beyond = middle;
+                    } else {
+                        inner = 0.5f * (inner + outer);
+                        filled = middle;
+                    }
+                }
+                let share = clamp((filled - half_full) / max(filled - beyond, 1e-6f), 0.0f, 1.0f);
+                way = mix(inner, outer, share);
                 found = diffusion_sample(start - way * toward_eye);
                 found.density = 0.0f;
             }
@@ -241,7 +259,9 @@ fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, i
         let flat = ends[end].w * cosines.x / max(cosines.y, 0.02f);
         way = mix(way, flat, lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y)));
         way = select(way, way * (1.0f - lit), end == 0u);
-        let far = min(body.extinction * (densities[end] * way), vec3f(30.0f));
+        // Where the eye's way leaves the body, light on its way to there goes through the matter before.
+        let density = select(densities[max(end, 1u) - 1u], densities[end], densities[end] > 0.0f);
+        let far = min(body.extinction * (density * way), vec3f(30.0f));
         if (end > 0u) {
             let thickness = body.extinction * (densities[end - 1u] * (ends[end].w - ends[end - 1u].w));
             sum += exp(-gone) * vec3f(

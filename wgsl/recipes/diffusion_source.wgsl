@@ -111,7 +111,8 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     if (any(texel.xy % vec2u(stride) != vec2u(stride / 2u))) {
         return;
     }
-    let side = width * f32(stride);
+    // Coarser texels than the grid stand for what they hit alone, and the sums stay within their words.
+    let side = min(width * f32(stride), 3.0f);
     let slant = select(1.0f, abs(dot(arrival.direction, view.axis)), view.lamp == 1u);
     let share = arrival.irradiance / source.largest * (side * side * slant);
     let cosine = seen.w;
@@ -120,7 +121,6 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
         let gamma = source.gamma[channel];
         energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), DIFFUSION_MILNE);
     }
-    let densest = max(source.extinction.x, max(source.extinction.y, source.extinction.z));
     var gone = vec3f(0.0f);
     var way = 0.0f;
     var entered = false;
@@ -130,6 +130,9 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
             let voxel = vec3u(clamp(entry - (way + 1e-3f) * arrival.direction, vec3f(0.0f), vec3f(f32(cells - 1u))));
             local = density[voxel.x + cells * (voxel.y + cells * voxel.z)];
         }
+        // Steps are an optical depth long, in the densest channel of which anything is left.
+        let left = select(vec3f(0.0f), source.extinction, gone < vec3f(DIFFUSION_RAY_DEPTH));
+        let densest = max(left.x, max(left.y, left.z));
         let length = min(0.5f, 1.0f / max(densest * local, 1e-6f));
         // Where the mean of what is scattered along the step lies.
         let middle = way + length * (0.5f - 0.083f * densest * local * length);

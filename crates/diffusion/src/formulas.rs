@@ -459,8 +459,7 @@ fn half_space() -> Vec<Formula> {
             let (eye, light) = (draws.between(0.2, 1.0), draws.between(0.2, 1.0));
             let (h_eye, h_light) = (draws.between(2.8, 3.0), draws.between(2.8, 3.0));
             let gamma = draws.between(0.1, 0.4);
-            // The deeper the nodes, the more is left of the difference.
-            (eye, light, h_eye, h_light, gamma, draws.between(2.0, 4.0), draws.between(1.0, 2.0))
+            (eye, light, h_eye, h_light, gamma, draws.between(0.5, 4.0), draws.between(0.3, 2.0))
         })
         .benign(1e-3)
         .build(),

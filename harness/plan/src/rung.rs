@@ -266,6 +266,8 @@ mod tests {
             ("", "a rung is"),
             ("godunov-65", "a multiple of 8"),
             ("godunov-8", "16 to 256"),
+            ("diffusion-136", "16 to 128"),
+            ("diffusion-12", "a multiple of 8"),
             ("tiled-26", "a rung is"),
             ("ping-pong-26-x", "`x` cells"),
         ] {

@@ -215,8 +215,14 @@ impl Rungs {
 
 fn gem(context: &Context, Gem { views, profile, rungs }: &Gem) -> Result<Outcome, Failure> {
     let Rungs { rungs, timed } = rungs;
-    if let Some(rung) = rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))) {
-        let ladder = if matches!(rung, Rung::Diffuse(_)) { "cdrf" } else { "optical_path" };
+    if let Some(rung) =
+        rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_) | Rung::Diffusion(_)))
+    {
+        let ladder = match rung {
+            Rung::Diffuse(_) => "cdrf",
+            Rung::Diffusion(_) => "translucent",
+            _ => "optical_path",
+        };
         return Err(Failure(format!(
             "`gem` has no rung {rung}, which draws no clear stone; `./cook cost {ladder}` has it"
         )));

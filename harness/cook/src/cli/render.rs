@@ -120,7 +120,7 @@ impl Arguments {
 
 /// Whether a note from before drawing is repeated with more detail by a note from drawing.
 fn is_told_again(note: &Note, found: &[Note]) -> bool {
-    let Note::NotSolid { objects, rung: Rung::OpticalPath(_), .. } = note else { return false };
+    let Note::NotSolid { objects, rung: Rung::OpticalPath(_) | Rung::Diffusion(_), .. } = note else { return false };
     objects.count == 1
         && found.iter().any(|found| matches!(found, Note::Open { object, .. } if *object == objects.first))
 }

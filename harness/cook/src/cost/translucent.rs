@@ -32,7 +32,7 @@ const REFERENCE: &str = "reference";
 /// The measures: distance after the best exposure, as both pictures are, and that exposure.
 const MEASURES: [&str; 3] = ["walks", "walks, exposure 1", "exposure"];
 /// The largest share of the distance of Lambert's law with shadows, by rung, that is a goal.
-const SHARES: [(&str, f64); 2] = [("diffusion-64", 0.6), ("diffusion-128", 0.5)];
+pub const SHARES: [(&str, f64); 2] = [("diffusion-64", 0.6), ("diffusion-128", 0.5)];
 
 /// Returns what to measure by default.
 pub fn options() -> Options {

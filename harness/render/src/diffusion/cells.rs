@@ -12,6 +12,8 @@ use lapidary_scene::{Material, Mesh};
 const RECIPE: &str = "diffusion_cells";
 /// Invocations of a workgroup.
 const GROUP: u32 = 64;
+/// Upper limit of a cell's loss by absorption, so that sums over cells stay finite.
+const MOST_ABSORBED: f32 = 1e12;
 /// Workgroups that share the large triangles.
 const LARGE_GROUPS: u32 = 32;
 
@@ -64,7 +66,8 @@ impl Cells {
         let faces = storage("conductances", 12 * voxels);
         let reactions = storage("losses", 16 * voxels);
         let absorption = material.medium.as_ref().map_or(glam::Vec3::ZERO, |medium| {
-            3.0 * grid.spacing * grid.spacing * medium.absorption * medium.transport_extinction()
+            let absorbed = 3.0 * (grid.spacing * medium.absorption) * (grid.spacing * medium.transport_extinction());
+            absorbed.min(glam::Vec3::splat(MOST_ABSORBED))
         });
         let record = Record::new("DiffusionCells").within("grid", |record| grid.fill(record));
         let record = builder.uniform("cells", record.with("milne", matter.milne()).with("absorption", absorption));

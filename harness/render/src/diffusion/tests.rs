@@ -24,7 +24,11 @@ struct Lone {
 
 impl Lone {
     /// Sets up a body of grey matter, of this extinction and share of absorption.
-    fn of(mesh: Mesh, cells: u32, (extinction, absorbed): (f32, f32), cycles: u32) -> Self {
+    fn of(mesh: Mesh, cells: u32, matter: (f32, f32), cycles: u32) -> Self {
+        Self::with(mesh, cells, matter, DiffusionOptions { cycles, warm: false })
+    }
+
+    fn with(mesh: Mesh, cells: u32, (extinction, absorbed): (f32, f32), options: DiffusionOptions) -> Self {
         let medium = Medium::isotropic(Vec3::splat(extinction * (1.0 - absorbed)), Vec3::splat(extinction * absorbed));
         let material = Material { medium: Some(medium), ..Material::standard() };
         let object = Object::new("body", mesh, material);
@@ -37,7 +41,6 @@ impl Lone {
         let cells =
             Cells::new(&mut builder, grid, (&object.mesh, &mesh), &[("EFFECT_SURFACE", 0.0)], of_body, (bits, None));
         let cells = cells.expect("the recipe");
-        let options = DiffusionOptions { cycles, warm: false };
         let levels = Levels::new(&mut builder, grid, &cells, options).expect("the recipe");
         cells.encode_voxels(&mut builder);
         cells.encode(&mut builder);
@@ -205,4 +208,25 @@ fn islands_and_matter_that_loses_nothing_have_finite_light() {
     let fluence = lone.solve(&everywhere(&lone, 1e6));
     assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0));
     assert!(fluence.iter().any(|value| *value > 0.0));
+}
+
+#[test]
+fn a_warm_start_goes_on_where_the_last_frame_ended() {
+    let residuals = [false, true].map(|warm| {
+        let lone = Lone::with(sphere(1.0, 64), 32, (8.0, 0.01), DiffusionOptions { cycles: 2, warm });
+        let right = everywhere(&lone, 8.0);
+        [(); 3].map(|()| lone.residual(&right, &lone.solve(&right)).0)
+    });
+    let [cold, warm] = residuals;
+    assert!(cold[0] == cold[2], "{cold:?}");
+    assert!(warm[2] < 0.2 * warm[1] && warm[1] < 0.2 * warm[0], "{warm:?}");
+}
+
+#[test]
+fn nothing_that_a_material_may_hold_breaks_the_equations() {
+    for matter in [(1e18, 0.0), (1e18, 1.0), (1e18, 0.5), (1e-30, 0.5), (0.0, 0.0)] {
+        let lone = Lone::of(sphere(1.0, 32), 16, matter, 4);
+        let fluence = lone.solve(&everywhere(&lone, 1.0));
+        assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0), "{matter:?}");
+    }
 }

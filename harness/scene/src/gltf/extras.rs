@@ -84,7 +84,7 @@ impl Lapidary<'_> {
                 .to_owned());
         }
         if matches!(material.solver, Some(Solver::OpticalPath(_) | Solver::Diffusion(_))) && material.medium.is_none() {
-            return Err("its extras.lapidary has a solver of optical paths, but no scattering and absorption to follow light by; give \
+            return Err("its extras.lapidary has a solver that follows light through the body, but no scattering and absorption to follow light by; give \
                         them, or another solver"
                 .to_owned());
         }
