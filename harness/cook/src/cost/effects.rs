@@ -187,7 +187,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         },
         Case {
             name: "dragon, rough, spots for suns",
-            scene: veined,
+            scene: veined.clone(),
             settings: settings("godunov-64"),
             effects: &[
                 Effect::OpticalPath,
@@ -203,6 +203,19 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 (Effect::Color, Effect::OpticalPath),
                 (Effect::ExtinctionPerVoxel, Effect::OpticalPath),
             ],
+        },
+        Case {
+            name: "dragon, rough, spots for suns",
+            scene: veined,
+            settings: settings("diffusion-64"),
+            effects: &[
+                Effect::Diffusion,
+                Effect::ExtinctionPerVoxel,
+                Effect::Environment,
+                Effect::Microfacet,
+                Effect::Spot,
+            ],
+            stands_on: &[(Effect::ExtinctionPerVoxel, Effect::Diffusion)],
         },
     ])
 }
