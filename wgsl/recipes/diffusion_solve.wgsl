@@ -7,7 +7,7 @@
 // parts: diffusion_nodes, diffusion_packed
 //
 // Levels are numbered from the finest. Each has its own buffers, and half the cells along each edge,
-// rounded up. The coarsest is a single cell, which takes up what the whole body has too little.
+// rounded up. The coarsest is a single cell, which corrects the mean.
 // Once the recipe diffusion_cells has made the finest level's equations:
 // 1. For each coarser level `diffusion_solve_coarsen`, one invocation per cell.
 // 2. For each level `diffusion_solve_list`, one invocation per tile of 4 x 4 x 4 cells; `workgroups`
@@ -156,13 +156,13 @@ fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_inv
     );
 }
 
-// What is left of a cell's equations.
+// The residual of a cell's equations.
 fn diffusion_residual(cell: vec3u, index: u32) -> vec3f {
     let across = diffusion_across(cell, index);
     return right[index].xyz + across.inflow - (across.conductances + reactions[index].xyz) * fluence[index].xyz;
 }
 
-// Hands what is left of this level's equations to the coarser level, whose fluence begins as 0. A
+// Adds up this level's residuals as the coarser level's right side, whose fluence begins as 0. A
 // workgroup is a tile, and each of its lanes a coarse cell.
 @compute @workgroup_size(8)
 fn diffusion_solve_restrict(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -1,4 +1,4 @@
-// diffusion_source: where light is scattered for the first time: every texel of the lights' maps sends its light straight on into the body, and leaves it with the nodes along the way.
+// diffusion_source: where light is scattered for the first time: every texel of the lights' maps sends its light straight on into the body, and adds it to the nodes along the way.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; light that is not yet scattered as the source of diffusion as in Ishimaru, "Wave
 //   Propagation and Scattering in Random Media", 1978, chapter 9.

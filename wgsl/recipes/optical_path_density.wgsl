@@ -4,7 +4,8 @@
 // requires: veins, voxelization
 // parts: matter
 //
-// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds.
+// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds; for
+// diffusion, between diffusion_cells_fill and diffusion_cells_finish.
 
 // Densities from a 3D texture instead of from veins. Called for by a grid of densities.
 override DENSITY_FROM_TEXTURE: bool = false;
