@@ -164,8 +164,8 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: 
                 var inner = before;
                 var outer = way;
                 var beyond = found.filled;
-                // Between points further apart than nodes, it is searched for first.
-                for (var turn = 0u; turn < 6u && outer - inner > 1.0f; turn++) {
+                // Between points much further apart than nodes, it is searched for first.
+                for (var turn = 0u; turn < 6u && outer - inner > 3.0f; turn++) {
                     let middle = diffusion_sample(start - 0.5f * (inner + outer) * toward_eye).filled;
                     if (middle < half_full) {
                         outer = 0.5f * (inner + outer);
