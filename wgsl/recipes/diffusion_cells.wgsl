@@ -49,13 +49,13 @@ struct DiffusionList {
 @group(0) @binding(6) var<storage, read_write> areas: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> depths: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> large: DiffusionList;
-@group(0) @binding(9) var<storage, read> density: array<f32>;
 // Words of the part diffusion_nodes.
-@group(0) @binding(10) var<storage, read_write> nodes: array<u32>;
+@group(0) @binding(9) var<storage, read_write> nodes: array<u32>;
 // Conductances to the next voxel along x, y and z: three numbers for each voxel.
-@group(0) @binding(11) var<storage, read_write> faces: array<f32>;
+@group(0) @binding(10) var<storage, read_write> faces: array<f32>;
 // What a voxel loses through the surface and by absorption in each channel; and its filled volume.
-@group(0) @binding(12) var<storage, read_write> reactions: array<vec4f>;
+@group(0) @binding(11) var<storage, read_write> reactions: array<vec4f>;
+@group(0) @binding(12) var<storage, read> density: array<f32>;
 
 fn diffusion_index(voxel: vec3u) -> u32 {
     return voxel.x + cells.grid.cells * (voxel.y + cells.grid.cells * voxel.z);

@@ -10,12 +10,12 @@ use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
 use super::lighting::Lighting;
 use super::mesh_buffers::MeshBuffers;
-use super::optical_path::{self, Stage};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
+use super::stage::Stage;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
-use crate::frame::{Bound, Buffer, Builder, Executor, Frame, PipelineId, PipelineSource};
+use crate::frame::{Bound, Builder, Executor, Frame, PipelineId, PipelineSource};
 use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use cells::Cells;
@@ -66,7 +66,6 @@ pub(super) struct Diffusions {
 struct BodyDiffusion {
     /// Name of its object.
     name: String,
-    grid: VoxelGrid,
     cells: Cells,
     densities: Option<Densities>,
     source: Source,
@@ -81,9 +80,6 @@ pub(super) fn pass(
     cells: u32,
     source: &str,
 ) -> Result<ScenePass, RenderError> {
-    for drawn in &part.objects {
-        optical_path::check(drawn.object, part.rung)?;
-    }
     let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, cells)?;
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
@@ -184,7 +180,7 @@ impl Add<'_> {
             },
             self.constants,
         )?;
-        Ok(BodyDiffusion { name: name.clone(), grid, cells, densities, source, levels })
+        Ok(BodyDiffusion { name: name.clone(), cells, densities, source, levels })
     }
 }
 
@@ -201,30 +197,13 @@ impl Diffusions {
     /// Encodes the passes that compute all that the frame's picture looks up, from the meshes and
     /// lights alone. Returns the range of passes of each stage except [`Stage::Shade`].
     pub(super) fn encode(&self, builder: &mut Builder<'_>) -> [Range<usize>; Stage::ALL.len() - 1] {
-        [Stage::Voxels, Stage::Maps, Stage::Seeds, Stage::Solve].map(|stage| {
-            let start = builder.frame().passes.len();
-            if stage == Stage::Maps {
-                self.maps.encode(builder);
-            } else {
-                for body in &self.bodies {
-                    builder.of_object(&body.name, |builder| body.encode(builder, stage));
-                }
-            }
-            start..builder.frame().passes.len()
-        })
+        Stage::before_shading(builder, &self.maps, &self.bodies, |body| &body.name, BodyDiffusion::encode)
     }
 
     /// Returns the notes on the last frame that was run. Waits for it.
     pub(super) fn notes(&self, executor: &Executor<'_>) -> Result<Vec<Note>, GpuError> {
-        let mut notes = Vec::new();
-        for body in &self.bodies {
-            let odd_columns = body.cells.voxelizer.status(executor)?.odd_columns;
-            if odd_columns > 0 {
-                let columns = 4 * body.grid.cells * body.grid.cells;
-                notes.push(Note::Open { object: body.name.clone(), odd_columns, columns });
-            }
-        }
-        Ok(notes)
+        let found = self.bodies.iter().map(|body| body.cells.voxelizer.note(executor, &body.name));
+        Ok(found.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
     /// Size in bytes of the maps and of each body's cells, densities, source and levels.
@@ -253,11 +232,6 @@ impl BodyDiffusion {
             Stage::Maps | Stage::Shade => {}
         }
     }
-}
-
-/// Returns the sum of the sizes of buffers in bytes.
-fn bytes_of(frame: &Frame, buffers: &[Buffer]) -> u64 {
-    buffers.iter().map(|buffer| frame.resource(*buffer).bytes()).sum()
 }
 
 #[cfg(test)]

@@ -48,6 +48,7 @@ mod settings;
 pub mod shader;
 mod shadows;
 pub mod solver;
+mod stage;
 mod stone;
 pub mod texture_diffusion;
 mod timer;
@@ -68,12 +69,12 @@ use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral::{self, Lost, Rendering, Window};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Environment, LARGEST_SIDE, Material, Object, Scene};
-pub use optical_path::Stage;
 pub use reflectance::Curvature;
 pub use settings::{
     DiffuseOptions, DiffusionOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, SCREEN_STEPS,
     Settings, WALKS, WalkOptions,
 };
+pub use stage::Stage;
 use std::sync::Mutex;
 pub use stone::geometry_bytes;
 pub(crate) use stone::{GemMaterial, GemWavelength, wavelengths};

@@ -6,8 +6,10 @@ use super::lighting::Lighting;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::{Drawn, Part};
 use crate::frame::{Bound, Buffer, Builder};
+use crate::voxelization::MOST_TRIANGLES;
 use glam::Vec3;
-use lapidary_scene::{Bounds, Light};
+use lapidary_plan::Rung;
+use lapidary_scene::{Bounds, Light, Object};
 
 /// Texels along a side of a map for each voxel along an edge of a grid that encloses all bodies:
 /// the sphere around a body is up to 1.7 grids wide.
@@ -36,13 +38,17 @@ pub(super) struct LightMaps {
 }
 
 impl LightMaps {
-    /// Creates the maps for the bodies of a part, whose grids have `cells` along each edge.
+    /// Creates the maps for the bodies of a part, whose grids have `cells` along each edge. Refuses
+    /// bodies through which no light can be followed.
     pub(super) fn of(
         builder: &mut Builder<'_>,
         lighting: &Lighting<'_>,
         part: &Part<'_>,
         cells: u32,
     ) -> Result<Self, RenderError> {
+        for drawn in &part.objects {
+            check(drawn.object, part.rung)?;
+        }
         let bounds = part.bounds();
         // A scene without lights gets a sun of zero irradiance.
         let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
@@ -57,6 +63,19 @@ impl LightMaps {
         let lit = Lit { views, maps: maps.layers(), size: maps.size(), lights: lighting.lights(builder) };
         Ok(Self { maps, lit, largest })
     }
+}
+
+/// Rejects a body through which no light can be followed.
+fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
+    let Object { name, material, mesh, .. } = object;
+    if material.medium.is_none() {
+        return Err(RenderError::NoMedium { object: name.clone(), material: material.name.clone(), rung });
+    }
+    if mesh.triangle_count() > MOST_TRIANGLES as usize {
+        let [bytes, limit] = [mesh.triangle_count() as u64, MOST_TRIANGLES.into()].map(|count| 12 * count);
+        return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
+    }
+    Ok(())
 }
 
 /// Returns the side in texels of the lights' maps, which show all bodies: large enough that the

@@ -2,7 +2,6 @@
 //! its costs each frame on the device: voxels, reflective shadow maps, seeds and a solver.
 
 mod seeds;
-mod stage;
 
 use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
@@ -10,20 +9,20 @@ use super::lighting::Lighting;
 use super::mesh_buffers::MeshBuffers;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
+use super::stage::Stage;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Executor, Frame, PipelineId, PipelineSource};
 use crate::record::Record;
 use crate::solver::{Solve, Solved, Solver, Status};
 use crate::voxel_grid::VoxelGrid;
-use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
+use crate::voxelization::Voxelizer;
 use glam::Vec3;
 use lapidary_gpu::GpuError;
-use lapidary_plan::{Effect, Note, Rung};
+use lapidary_plan::{Effect, Note};
 use lapidary_scene::solver::Paths;
 use lapidary_scene::{Bounds, Density, Material, Object};
 use seeds::{Seeded, Seeds};
-pub use stage::Stage;
 use std::f32::consts::FRAC_1_PI;
 use std::ops::Range;
 
@@ -37,7 +36,6 @@ pub(super) struct OpticalPaths {
 struct BodyPaths {
     /// Name of its object.
     name: String,
-    grid: VoxelGrid,
     voxelizer: Voxelizer,
     densities: Option<Densities>,
     solver: Solver,
@@ -62,9 +60,6 @@ pub(super) fn pass(
     paths: Paths,
     source: &str,
 ) -> Result<ScenePass, RenderError> {
-    for drawn in &part.objects {
-        check(drawn.object, part.rung)?;
-    }
     let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, paths.cells)?;
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
@@ -92,19 +87,6 @@ pub(super) fn pass(
     }
     pass.before.push(Before::Paths(OpticalPaths { maps, bodies }));
     Ok(pass)
-}
-
-/// Rejects a body through which no light can be followed.
-pub(super) fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
-    let Object { name, material, mesh, .. } = object;
-    if material.medium.is_none() {
-        return Err(RenderError::NoMedium { object: name.clone(), material: material.name.clone(), rung });
-    }
-    if mesh.triangle_count() > MOST_TRIANGLES as usize {
-        let [bytes, limit] = [mesh.triangle_count() as u64, MOST_TRIANGLES.into()].map(|count| 12 * count);
-        return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
-    }
-    Ok(())
 }
 
 /// Inputs for adding a body, besides the body itself.
@@ -179,7 +161,6 @@ impl Add<'_> {
         let channels = (0..if decisions.has(Effect::Color) { 3 } else { 1 }).map(&mut channel).collect();
         Ok(BodyPaths {
             name: name.clone(),
-            grid,
             voxelizer,
             densities,
             solver,
@@ -220,28 +201,14 @@ impl OpticalPaths {
     /// meshes and lights alone. Returns the range of passes of each stage except [`Stage::Shade`],
     /// which is not part of it.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) -> [Range<usize>; Stage::ALL.len() - 1] {
-        [Stage::Voxels, Stage::Maps, Stage::Seeds, Stage::Solve].map(|stage| {
-            let start = builder.frame().passes.len();
-            if stage == Stage::Maps {
-                self.maps.encode(builder);
-            } else {
-                for body in &self.bodies {
-                    builder.of_object(&body.name, |builder| body.encode(builder, stage));
-                }
-            }
-            start..builder.frame().passes.len()
-        })
+        Stage::before_shading(builder, &self.maps, &self.bodies, |body| &body.name, BodyPaths::encode)
     }
 
     /// Returns the notes on the last frame that was run. Waits for it.
     pub(super) fn notes(&self, executor: &Executor<'_>) -> Result<Vec<Note>, GpuError> {
         let mut notes = Vec::new();
         for body in &self.bodies {
-            let odd_columns = body.voxelizer.status(executor)?.odd_columns;
-            if odd_columns > 0 {
-                let columns = body.grid.cells * body.grid.cells;
-                notes.push(Note::Open { object: body.name.clone(), odd_columns, columns });
-            }
+            notes.extend(body.voxelizer.note(executor, &body.name)?);
             let mut bound = 0f32;
             for (number, channel) in body.channels.iter().enumerate() {
                 // The first brightness covers all three channels if there is only one.
@@ -268,7 +235,7 @@ impl OpticalPaths {
     /// Size in bytes of the maps and of each body's voxels, densities, costs and solver.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let of = |body: &BodyPaths| {
-            let costs: u64 = body.channels.iter().map(|channel| frame.resource(channel.solved.cost).bytes()).sum();
+            let costs = frame.bytes_of(body.channels.iter().map(|channel| channel.solved.cost));
             let densities = body.densities.as_ref().map_or(0, |densities| densities.bytes(frame));
             body.voxelizer.bytes(frame) + densities + costs + body.solver.bytes(frame)
         };

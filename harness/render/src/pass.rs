@@ -2,8 +2,9 @@
 
 use super::blur::Blur;
 use super::diffusion::Diffusions;
-use super::optical_path::{OpticalPaths, Stage};
+use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
+use super::stage::Stage;
 use crate::frame::{BindGroupId, Bound, Builder, Depth, Draw, Pass, PipelineId, RenderPass, Target};
 use crate::record::Record;
 use glam::{Mat4, Vec3};

@@ -210,7 +210,7 @@ impl Solver {
     #[must_use]
     pub fn bytes(&self, frame: &Frame) -> u64 {
         let shared = [self.fresh, self.progress, self.workgroups];
-        shared.into_iter().chain(self.own.iter().copied()).map(|buffer| frame.resource(buffer).bytes()).sum()
+        frame.bytes_of(shared.into_iter().chain(self.own.iter().copied()))
     }
 }
 

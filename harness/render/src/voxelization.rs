@@ -5,6 +5,7 @@ use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Gpu, GpuError};
+use lapidary_plan::Note;
 use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
@@ -146,7 +147,18 @@ impl Voxelizer {
     #[must_use]
     pub fn bytes(&self, frame: &Frame) -> u64 {
         let buffers = [self.grid, self.beyond, self.large, self.corners, self.matter, self.status];
-        buffers.into_iter().chain(self.surface).map(|buffer| frame.resource(buffer).bytes()).sum()
+        frame.bytes_of(buffers.into_iter().chain(self.surface))
+    }
+
+    /// Returns the note on a mesh that is open, by the counts of the last frame; `object` is its name.
+    /// Waits for the device.
+    ///
+    /// # Errors
+    /// If reading from the device fails.
+    pub fn note(&self, executor: &Executor<'_>, object: &str) -> Result<Option<Note>, GpuError> {
+        let odd_columns = self.status(executor)?.odd_columns;
+        let columns = self.cells * self.cells;
+        Ok((odd_columns > 0).then(|| Note::Open { object: object.to_owned(), odd_columns, columns }))
     }
 
     /// Returns the counts of the last frame that was submitted. Waits for the device.

@@ -6,6 +6,7 @@ use super::table::{Goal, Table, figure};
 use super::timing::{self, Timed};
 use super::{CostError, Ladder, Options, Progress, Report, Row};
 use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
 use lapidary_scene::Scene;
 
 /// The ladder.
@@ -53,7 +54,7 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         let scene = Scene::named(view)?;
         let measured: Vec<Measured> =
             options.rungs.iter().map(|rung| Measured { rung: *rung, unscaled: false }).collect();
-        let drawn = |of: &&Measured| of.rung.to_string() != REFERENCE;
+        let drawn = |of: &&Measured| of.rung != Rung::Reference;
         let timed: Vec<Timed<'_>> =
             measured.iter().filter(drawn).map(|of| Timed::new(&scene, settings(view, *of, options.frame))).collect();
         let mut timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?.into_iter();

@@ -1,7 +1,7 @@
 //! The recipe `diffusion_cells`: a body as cells, from voxels of half the spacing and from its mesh.
 
 use super::super::mesh_buffers::MeshBuffers;
-use super::{Matter, bytes_of};
+use super::Matter;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
@@ -81,12 +81,12 @@ impl Cells {
             areas,
             depths,
             large,
-            density.unwrap_or(nodes),
             nodes,
             faces,
             reactions,
         ];
-        let resources: Vec<(u32, Bound)> = (0..).zip(bound.map(Bound::from)).collect();
+        let mut resources: Vec<(u32, Bound)> = (0..).zip(bound.map(Bound::from)).collect();
+        resources.extend(density.map(|density| (12, density.into())));
         let words = grid.words_per_row() * grid.cells * grid.cells;
         let counts =
             [words.div_ceil(GROUP), (triangles as u32).div_ceil(GROUP), LARGE_GROUPS, (voxels as u32).div_ceil(GROUP)];
@@ -115,6 +115,6 @@ impl Cells {
     /// Size of the buffers in bytes.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let shared = [self.nodes, self.faces, self.reactions];
-        self.voxelizer.bytes(frame) + bytes_of(frame, &shared) + bytes_of(frame, &self.own)
+        self.voxelizer.bytes(frame) + frame.bytes_of(shared) + frame.bytes_of(self.own.iter().copied())
     }
 }

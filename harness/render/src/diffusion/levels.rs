@@ -1,6 +1,5 @@
 //! The recipe `diffusion_solve`: grids, each half as fine as the one before, and the cycles over them.
 
-use super::bytes_of;
 use super::cells::Cells;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, PipelineId, Workgroups};
 use crate::record::Record;
@@ -134,10 +133,10 @@ impl Levels {
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let of = |(number, level): (usize, &Level)| {
             let shared = [level.tiles, level.workgroups, level.fluence, level.right];
-            let equations = if number == 0 { 0 } else { bytes_of(frame, &[level.faces, level.reactions]) };
-            bytes_of(frame, &shared) + equations
+            let equations = if number == 0 { 0 } else { frame.bytes_of([level.faces, level.reactions]) };
+            frame.bytes_of(shared) + equations
         };
-        bytes_of(frame, &[self.fresh, self.packed]) + self.levels.iter().enumerate().map(of).sum::<u64>()
+        frame.bytes_of([self.fresh, self.packed]) + self.levels.iter().enumerate().map(of).sum::<u64>()
     }
 }
 

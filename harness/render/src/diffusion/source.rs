@@ -1,7 +1,7 @@
 //! The recipe `diffusion_source`: where light is scattered for the first time.
 
 use super::super::light_maps::Lit;
-use super::{Matter, bytes_of};
+use super::Matter;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
@@ -75,6 +75,6 @@ impl Source {
 
     /// Size of the buffers in bytes.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
-        bytes_of(frame, &[self.loads])
+        frame.bytes_of([self.loads])
     }
 }

@@ -1,6 +1,7 @@
 use super::cells::Cells;
 use super::levels::Levels;
 use super::*;
+use crate::frame::Buffer;
 use crate::settings::DiffusionOptions;
 use glam::{DQuat, DVec3};
 use lapidary_gpu::{AdapterChoice, Gpu};

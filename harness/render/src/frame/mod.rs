@@ -422,6 +422,15 @@ impl Frame {
         &self.resources[place]
     }
 
+    /// Returns the sum of the sizes of some buffers in bytes.
+    ///
+    /// # Panics
+    /// If a handle is of another frame.
+    #[must_use]
+    pub fn bytes_of(&self, buffers: impl IntoIterator<Item = Buffer>) -> u64 {
+        buffers.into_iter().map(|buffer| self.resource(buffer).bytes()).sum()
+    }
+
     /// Returns the pipeline of a handle.
     ///
     /// # Panics
