@@ -3,7 +3,7 @@
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel, microfacet, reflective_shadow_map
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -24,7 +24,7 @@ override CURVATURE_FORM: u32 = 0u;
 // texture_irradiance and texture_diffusion.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;
 // Bodies cast shadows on one another and on themselves: the recipe reflective_shadow_map draws each
-// light's view beforehand. Called for by the rung lambert-shadowed, or by the user.
+// light's view beforehand. Called for by bodies that may stand in the light.
 override EFFECT_SHADOW: bool = false;
 // Light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
@@ -239,6 +239,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
         if (EFFECT_SHADOW) {
             reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));
         }
+        if (EFFECT_COLORED_SHADOW) {
+            reflectance *= stone_shadow_of_light(index, input.position);
+        }
         received += arrival.irradiance * reflectance;
     }
     if (EFFECT_ENVIRONMENT) {
@@ -270,6 +273,9 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
         var highlight = reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
         if (EFFECT_SHADOW) {
             highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);
+        }
+        if (EFFECT_COLORED_SHADOW) {
+            highlight *= stone_shadow_of_light(index, position);
         }
         sum += highlight;
     }

@@ -8,6 +8,10 @@
 // Draw 3 vertices per triangle, with a depth test and without culling, into one layer of an
 // rgba32float texture cleared to (0, 0, 0, REFLECTIVE_SHADOW_MAP_NOTHING).
 
+// Bodies keep light from others, and none enters them: their N.L counts as 0, and their normals are
+// neither read nor bound.
+override REFLECTIVE_SHADOW_MAP_CASTS_ONLY: bool = false;
+
 @group(0) @binding(0) var<uniform> view: ReflectiveShadowMapView;
 // Three floats per vertex, in world space.
 @group(1) @binding(0) var<storage, read> positions: array<f32>;
@@ -24,7 +28,11 @@ struct ReflectiveShadowMapVertex {
 fn reflective_shadow_map_vertex(@builtin(vertex_index) vertex: u32) -> ReflectiveShadowMapVertex {
     let index = indices[vertex];
     let position = mesh_position(index);
-    return ReflectiveShadowMapVertex(reflective_shadow_map_clip(view, position), position, mesh_normal(index));
+    var normal = vec3f(0.0f);
+    if (!REFLECTIVE_SHADOW_MAP_CASTS_ONLY) {
+        normal = mesh_normal(index);
+    }
+    return ReflectiveShadowMapVertex(reflective_shadow_map_clip(view, position), position, normal);
 }
 
 @fragment
@@ -35,6 +43,9 @@ fn reflective_shadow_map_fragment(input: ReflectiveShadowMapVertex, @builtin(fro
     }
     // Light that falls on a surface from behind has come through a hole in the mesh: the surface
     // casts a shadow, but no light enters there.
-    let cosine = select(0.0f, reflective_shadow_map_cosine(input.normal, toward_light), front);
+    var cosine = 0.0f;
+    if (!REFLECTIVE_SHADOW_MAP_CASTS_ONLY) {
+        cosine = select(0.0f, reflective_shadow_map_cosine(input.normal, toward_light), front);
+    }
     return vec4f(input.position, cosine);
 }

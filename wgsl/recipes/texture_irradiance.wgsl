@@ -4,12 +4,13 @@
 //   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
 //   GPU Gems 3, 2007, chapter 14.
 // requires: cdrf, environment, reflective_shadow_map, texture_diffusion
-// parts: mesh, mesh_normals, lights, light_views, shadow, harmonics
+// parts: mesh, mesh_normals, lights, light_views, shadow, stone_shadow, harmonics
 //
 // Draw 3 vertices per triangle, without culling or depth test, into two targets cleared to 0:
 // rgba16float and rg32float.
 
-// Bodies cast shadows on one another and on themselves. Called for by the user.
+// Bodies cast shadows on one another and on themselves. Called for by bodies that may stand in the
+// light.
 override EFFECT_SHADOW: bool = false;
 // Light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
@@ -55,6 +56,9 @@ fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradia
         var part = arrival.irradiance * cdrf_lambert(cosine);
         if (EFFECT_SHADOW) {
             part *= shadow_of_light(index, input.position, normal);
+        }
+        if (EFFECT_COLORED_SHADOW) {
+            part *= stone_shadow_of_light(index, input.position);
         }
         received += part;
     }

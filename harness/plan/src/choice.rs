@@ -14,6 +14,8 @@ pub enum Scattering {
     Cdrf,
     /// Light paths through the body.
     OpticalPath,
+    /// Diffusion through the body.
+    Diffusion,
 }
 
 /// How an object is drawn: by a rung that the user or the material names, or by a technique.
@@ -85,7 +87,11 @@ fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Techn
         return (Technique::Cdrf, reason.to_owned());
     };
     if let Some(asked) = request.scattering {
-        let technique = if asked == Scattering::Cdrf { Technique::Cdrf } else { Technique::OpticalPath };
+        let technique = match asked {
+            Scattering::Cdrf => Technique::Cdrf,
+            Scattering::OpticalPath => Technique::OpticalPath,
+            Scattering::Diffusion => Technique::Diffusion,
+        };
         return (technique, "asked for, whatever its thickness".to_owned());
     }
     if scene.lights.is_empty() {
@@ -98,7 +104,7 @@ fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Techn
     let free = thickness.mean_free_path;
     if free.is_infinite() {
         let reason = "somewhere a colour is neither scattered nor absorbed: light comes through the body";
-        return (Technique::OpticalPath, reason.to_owned());
+        return (Technique::Translucent, reason.to_owned());
     }
     let paths = thickness.mean_free_paths();
     let most = super::thickness::MOST_MEAN_FREE_PATHS;
@@ -110,7 +116,7 @@ fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Techn
         short(free)
     );
     if thickness.shows_through() {
-        return (Technique::OpticalPath, format!("{compared}, at most {most}: light comes through the body"));
+        return (Technique::Translucent, format!("{compared}, at most {most}: light comes through the body"));
     }
     let reason = format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads");
     (Technique::Cdrf, reason)

@@ -1,6 +1,7 @@
 //! What a material requires: for each effect, whether it is on under the rung that draws the
 //! object, and the property that decides.
 
+use super::casting::{self, Casting};
 use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
 use super::numbers::{short, triple};
@@ -144,6 +145,7 @@ impl Case<'_> {
             Effect::Color => self.color(),
             Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
             Effect::Shadow => self.shadow(),
+            Effect::ColoredShadow => self.colored_shadow(),
             Effect::Environment => self.environment(),
             Effect::EnvironmentMap => self.environment_map(),
             Effect::Microfacet => self.microfacet(),
@@ -403,20 +405,68 @@ impl Case<'_> {
         }
     }
 
-    fn shadow(&self) -> Answer {
-        let called = match self.rung {
-            Rung::Diffuse(Reflectance::LambertShadowed) => "the rung casts shadows",
-            Rung::Diffuse(_) if self.request.shadows => "asked for",
-            Rung::Diffuse(_) => return off("not asked for by --with shadow or the rung lambert-shadowed"),
-            Rung::OpticalPath(_) | Rung::Diffusion(_) => {
-                return off("part of the rung: light enters where its source sees the body");
-            }
-            _ => return off("clear bodies are lit by the environment"),
+    /// Returns `Ok` if the body receives shadows where something casts any, else the reason why not.
+    fn receives_shadows(&self) -> Result<(), String> {
+        let Rung::Diffuse(reflectance) = self.rung else {
+            return Err("clear bodies are lit by the environment".to_owned());
         };
-        if self.scene.lights.is_empty() {
-            return off("no light but the environment, which casts none");
+        let asked = self.request.shadows || reflectance == Reflectance::LambertShadowed;
+        if !asked && self.request.rung != Rung::ByMaterial {
+            return Err("a rung is asked for: --with shadow or the rung lambert-shadowed".to_owned());
         }
-        on(called)
+        if !asked && self.request.quality == Quality::Fast {
+            return Err("quality fast".to_owned());
+        }
+        self.has_light()
+    }
+
+    fn has_light(&self) -> Result<(), String> {
+        if self.scene.lights.is_empty() {
+            return Err("no light but the environment, which casts none".to_owned());
+        }
+        Ok(())
+    }
+
+    fn shadow(&self) -> Answer {
+        if matches!(self.rung, Rung::OpticalPath(_) | Rung::Diffusion(_)) {
+            return self.shadow_on_body();
+        }
+        if let Err(reason) = self.receives_shadows() {
+            return off(reason);
+        }
+        match casting::caster(self.object, self.scene, Casting::Opaque) {
+            None => off("nothing stands between it and a light"),
+            Some(caster) if std::ptr::eq(caster, self.object) => on("it may stand in its own light"),
+            Some(caster) => on(format!("{} may stand in its light", caster.name)),
+        }
+    }
+
+    /// Shadow on a body through which light is followed.
+    fn shadow_on_body(&self) -> Answer {
+        let own = "its own is part of the rung: light enters where its source sees the body";
+        if self.request.rung != Rung::ByMaterial {
+            return off(own);
+        }
+        if self.request.quality == Quality::Fast {
+            return off("quality fast");
+        }
+        match casting::caster(self.object, self.scene, Casting::Opaque) {
+            Some(caster) if !std::ptr::eq(caster, self.object) => on(format!("{} may stand in its light", caster.name)),
+            _ => off(own),
+        }
+    }
+
+    fn colored_shadow(&self) -> Answer {
+        if matches!(self.rung, Rung::OpticalPath(_) | Rung::Diffusion(_)) {
+            return off("clear stones cast none on a body through which light is followed");
+        }
+        if let Err(reason) = self.receives_shadows() {
+            return off(reason);
+        }
+        match casting::caster(self.object, self.scene, Casting::Clear) {
+            None => off("no clear stone stands between it and a light"),
+            Some(caster) => on(format!("light may come through {}", caster.name)),
+        }
     }
 
     fn environment(&self) -> Answer {

@@ -48,14 +48,17 @@ pub const CONCAVE: [&str; 2] = ["bunny_stone", "prism_chain"];
 
 const GEM: &str = include_str!("../../../docs/measurements/lavapipe/gem.json");
 const CDRF: &str = include_str!("../../../docs/measurements/lavapipe/cdrf.json");
+const TRANSLUCENT: &str = include_str!("../../../docs/measurements/lavapipe/translucent.json");
 const OPTICAL_PATH: &str = include_str!("../../../docs/measurements/lavapipe/optical_path.json");
 
-static COMMITTED: LazyLock<[Option<Ladder>; 4]> = LazyLock::new(|| {
+static COMMITTED: LazyLock<[Option<Ladder>; 6]> = LazyLock::new(|| {
     [
         (Technique::Convex, GEM),
         (Technique::Concave, GEM),
         (Technique::Cdrf, CDRF),
+        (Technique::Translucent, TRANSLUCENT),
         (Technique::OpticalPath, OPTICAL_PATH),
+        (Technique::Diffusion, TRANSLUCENT),
     ]
     .map(|(technique, record)| Ladder::of_record(technique, record).ok())
 });
@@ -83,6 +86,7 @@ impl Ladder {
             Technique::Cdrf => ("largest error of the function", |row| {
                 row.measure == "largest" && row.view == "lit+screen" && row.rung != "spherical"
             }),
+            Technique::Translucent | Technique::Diffusion => ("distance from walks", |row| row.measure == "walks"),
             Technique::OpticalPath => ("nats of error", |row| row.measure == "nats"),
             Technique::Opaque | Technique::ThinWall => ("", |_| false),
         };
@@ -249,7 +253,7 @@ mod tests {
                 panic!("{reason}");
             }
         }
-        assert_eq!(judged, 4);
+        assert_eq!(judged, 6);
     }
 
     /// The rule refuses the former defaults.

@@ -16,6 +16,7 @@
 //! # Ok::<(), lapidary_scene::SceneError>(())
 //! ```
 
+pub mod casting;
 mod choice;
 mod decision;
 mod effect;

@@ -48,7 +48,11 @@ pub enum Technique {
     /// Scattering near the surface, by its curvature.
     Cdrf,
     /// Light through a scattering body.
+    Translucent,
+    /// The same by paths of least cost, on request.
     OpticalPath,
+    /// The same by diffusion at any quality, on request.
+    Diffusion,
     /// No light inside the body.
     Opaque,
     /// Clear body without an inside.
@@ -57,7 +61,7 @@ pub enum Technique {
 
 /// The rungs of each technique by quality, in the order of [`Quality::ALL`]. A better quality has
 /// the same rung as the one before it if nothing more expensive cuts the error by a tenth.
-const RUNGS: [(Technique, [Rung; 3]); 6] = [
+const RUNGS: [(Technique, [Rung; 3]); 8] = [
     (
         Technique::Convex,
         [
@@ -78,10 +82,12 @@ const RUNGS: [(Technique, [Rung; 3]); 6] = [
         Technique::Cdrf,
         [Rung::Diffuse(Reflectance::Wrap), Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Accurate)],
     ),
+    (Technique::Translucent, [paths(32, Method::Godunov), Rung::Diffusion(64), Rung::Diffusion(128)]),
     (
         Technique::OpticalPath,
         [paths(32, Method::Tiled(Stencil::Corners)), paths(64, Method::Godunov), paths(128, Method::Godunov)],
     ),
+    (Technique::Diffusion, [Rung::Diffusion(32), Rung::Diffusion(64), Rung::Diffusion(128)]),
     (Technique::Opaque, [Rung::Diffuse(Reflectance::Lambert); 3]),
     (Technique::ThinWall, [Rung::Surface; 3]),
 ];
@@ -96,8 +102,16 @@ const fn paths(cells: u32, method: Method) -> Rung {
 
 impl Technique {
     /// All techniques, those with a ladder first.
-    pub const ALL: [Self; 6] =
-        [Self::Convex, Self::Concave, Self::Cdrf, Self::OpticalPath, Self::Opaque, Self::ThinWall];
+    pub const ALL: [Self; 8] = [
+        Self::Convex,
+        Self::Concave,
+        Self::Cdrf,
+        Self::Translucent,
+        Self::OpticalPath,
+        Self::Diffusion,
+        Self::Opaque,
+        Self::ThinWall,
+    ];
 
     /// Returns the technique's rung for a quality.
     #[must_use]

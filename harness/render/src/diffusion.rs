@@ -9,7 +9,7 @@ mod source;
 use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
 use super::lighting::Lighting;
-use super::mesh_buffers::MeshBuffers;
+use super::mesh_buffers::{MeshBuffers, ShapeBuffers, Shapes};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::stage::Stage;
@@ -97,7 +97,8 @@ pub(super) fn pass(
         let add = Add { pipeline, constants: &constants, cells, lit: &lit, largest, settings: part.settings };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
-            let (body, of_body) = builder.of_object(&drawn.name, |builder| add.body(builder, drawn, &mut maps))?;
+            let (body, of_body) =
+                builder.of_object(&drawn.name, |builder| add.body(builder, drawn, (&lighting.shapes, &mut maps)))?;
             drawn_bodies.push(body);
             bodies.extend(of_body);
         }
@@ -126,20 +127,21 @@ impl Add<'_> {
         &self,
         builder: &mut Builder<'_>,
         drawn: &Drawn<'_>,
-        maps: &mut ReflectiveShadowMaps,
+        (shapes, maps): (&Shapes, &mut ReflectiveShadowMaps),
     ) -> Result<(Body, Option<BodyDiffusion>), RenderError> {
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.cells);
         let matter = Matter::of(material, grid);
-        let buffers = MeshBuffers::of(builder, drawn.object)?;
-        maps.add(builder, name, &buffers);
+        let shape = shapes.of(builder, name, drawn.object)?;
+        let buffers = MeshBuffers::of(builder, shape, drawn.object)?;
+        maps.add(builder, name, &buffers)?;
         let of_body = if decisions.has(Effect::Diffusion) {
-            Some(self.diffusion(builder, drawn, grid, matter, &buffers)?)
+            Some(self.diffusion(builder, drawn, grid, matter, &shape)?)
         } else {
             None
         };
         let record = builder.record("material", record_of(grid, material, matter, self.largest));
-        let MeshBuffers { positions, indices, normals, vertices } = buffers;
+        let MeshBuffers { shape: ShapeBuffers { positions, indices, vertices }, normals } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
         if let Some(of_body) = &of_body {
@@ -157,7 +159,7 @@ impl Add<'_> {
         drawn: &Drawn<'_>,
         grid: VoxelGrid,
         matter: Matter,
-        mesh: &MeshBuffers,
+        mesh: &ShapeBuffers,
     ) -> Result<BodyDiffusion, RenderError> {
         let Drawn { object: Object { mesh: shape, material, .. }, name, decisions } = drawn;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);

@@ -107,7 +107,7 @@ pub(super) fn scene_pass(
 ) -> Result<ScenePass, RenderError> {
     let mut all = ScenePass::default();
     let parts = Part::all(scene, settings);
-    let shadows = Shadows::of(builder, &scene.lights, &parts)?;
+    let shadows = Shadows::of(builder, lighting, &parts)?;
     let is_smoothed = |part: &Part<'_>| part.objects.iter().any(|drawn| drawn.decisions.has(Effect::Footprint));
     for part in &parts {
         let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));

@@ -18,6 +18,7 @@ mod blur;
 mod bodies;
 mod camera;
 pub mod cdrf;
+mod colored_shadow;
 pub mod compute;
 mod deferred;
 mod density;

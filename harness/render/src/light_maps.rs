@@ -4,11 +4,13 @@ use super::RenderError;
 use super::light_views;
 use super::lighting::Lighting;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
+use super::shadows::{self, Caster};
 use super::variant::{Drawn, Part};
 use crate::frame::{Bound, Buffer, Builder};
 use crate::voxelization::MOST_TRIANGLES;
 use glam::Vec3;
-use lapidary_plan::Rung;
+use lapidary_plan::casting::{self, Casting};
+use lapidary_plan::{Effect, Rung};
 use lapidary_scene::{Bounds, Light, Object};
 
 /// Texels along a side of a map for each voxel along an edge of a grid that encloses all bodies:
@@ -50,19 +52,36 @@ impl LightMaps {
             check(drawn.object, part.rung)?;
         }
         let bounds = part.bounds();
+        let casters = casters(lighting, part);
+        let before = casters.iter().map(|(_, body)| casting::bounds(body)).reduce(Bounds::joined);
         // A scene without lights gets a sun of zero irradiance.
         let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
         let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
-        let views = light_views::views(lights, bounds);
+        let views = light_views::views(lights, bounds, before);
         let largest = light_views::largest_irradiance(lights, bounds);
         // Without lights, one texel is enough to say so.
         let side = if part.lights.is_empty() { 1 } else { map_side(part, cells) };
         let side = side.min(builder.limits().max_texture_dimension_2d);
-        let maps = ReflectiveShadowMaps::new(builder, &views, side, &format!("of {}", part.rung))?;
+        let mut maps = ReflectiveShadowMaps::new(builder, &views, side, &format!("of {}", part.rung))?;
+        for (name, body) in casters {
+            let shape = lighting.shapes.of(builder, &name, body)?;
+            maps.add_caster(builder, &name, &shape)?;
+        }
         let views = reflective_shadow_map::view_buffer(builder, &views);
         let lit = Lit { views, maps: maps.layers(), size: maps.size(), lights: lighting.lights(builder) };
         Ok(Self { maps, lit, largest })
     }
+}
+
+/// Returns the other bodies that may keep light from those of a part that receive shadows.
+fn casters<'a>(lighting: &Lighting<'a>, part: &Part<'_>) -> Vec<Caster<'a>> {
+    let is_lit = |drawn: &&Drawn<'_>| drawn.decisions.has(Effect::Shadow);
+    let lit: Vec<_> =
+        part.objects.iter().filter(is_lit).map(|drawn| (drawn.object, casting::bounds(drawn.object))).collect();
+    let is_own = |other: &Object| part.objects.iter().any(|drawn| std::ptr::eq(drawn.object, other));
+    let mut casters = shadows::casters_on(lighting, &lit, Casting::Opaque);
+    casters.retain(|(_, other)| !is_own(other));
+    casters
 }
 
 /// Rejects a body through which no light can be followed.

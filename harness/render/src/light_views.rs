@@ -21,40 +21,42 @@ const NEAREST: f32 = 1e-3;
 /// Margin around the contents of a view, so that rounding puts nothing beyond its edge.
 const MARGIN: f32 = 1.0 + 1e-4;
 
-/// Returns the views of all lights, light by light, for a scene within `bounds`.
-pub(super) fn views(lights: &[Light], bounds: Bounds) -> Vec<LightView> {
+/// Returns the views of all lights, light by light, for a scene within `bounds`, in front of which bodies
+/// within `before` stand, if any.
+pub(super) fn views(lights: &[Light], bounds: Bounds, before: Option<Bounds>) -> Vec<LightView> {
     (0..)
         .zip(lights)
-        .flat_map(|(light, of)| views_of(of, bounds).into_iter().map(move |view| LightView { view, light }))
+        .flat_map(|(light, of)| views_of(of, bounds, before).into_iter().map(move |view| LightView { view, light }))
         .collect()
 }
 
-fn views_of(light: &Light, bounds: Bounds) -> Vec<ReflectiveShadowMapView> {
+fn views_of(light: &Light, bounds: Bounds, before: Option<Bounds>) -> Vec<ReflectiveShadowMapView> {
     let (centre, radius) = (bounds.centre(), bounds.radius().max(f32::MIN_POSITIVE) * MARGIN);
     match *light {
         Light::Directional { toward, .. } => {
-            vec![ReflectiveShadowMapView {
-                origin: centre,
-                lamp: 0,
-                axis: -toward,
-                extent: radius,
-                near: -radius,
-                far: radius,
-            }]
+            let reach = |before: Bounds| toward.dot(before.centre() - centre) + before.radius() * MARGIN;
+            let near = -before.map_or(radius, |before| reach(before).max(radius));
+            vec![ReflectiveShadowMapView { origin: centre, lamp: 0, axis: -toward, extent: radius, near, far: radius }]
         }
-        Light::Point { position, .. } => lamp(position, centre, radius, None),
+        Light::Point { position, .. } => lamp(position, (centre, radius), before.is_some(), None),
         Light::Spot { position, direction, outer_angle, .. } => {
-            lamp(position, centre, radius, Some((direction, outer_angle.tan())))
+            lamp(position, (centre, radius), before.is_some(), Some((direction, outer_angle.tan())))
         }
     }
 }
 
-/// Returns the views of a lamp; `cone` is `None` if its light is not bounded by a cone.
-fn lamp(position: Vec3, centre: Vec3, radius: f32, cone: Option<(Vec3, f32)>) -> Vec<ReflectiveShadowMapView> {
+/// Returns the views of a lamp that sees a sphere, in front of which other bodies may stand; `cone` is
+/// `None` if its light is not bounded by a cone.
+fn lamp(
+    position: Vec3,
+    (centre, radius): (Vec3, f32),
+    before: bool,
+    cone: Option<(Vec3, f32)>,
+) -> Vec<ReflectiveShadowMapView> {
     let way = centre - position;
     let distance = way.length();
     let far = (distance + radius) * MARGIN;
-    let near = (distance - radius).max(NEAREST * far);
+    let near = if before { NEAREST * far } else { (distance - radius).max(NEAREST * far) };
     let view = |axis, extent, near| ReflectiveShadowMapView { origin: position, lamp: 1, axis, extent, near, far };
     // The cone that touches the scene's sphere.
     let about =
@@ -107,7 +109,7 @@ mod tests {
             let clip = clip(from.view, point);
             clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && (0.0..=clip.w).contains(&clip.z)
         };
-        views(&[light], BOUNDS).iter().filter(|view| seen(view)).count()
+        views(&[light], BOUNDS, None).iter().filter(|view| seen(view)).count()
     }
 
     fn lamp_at(position: Vec3) -> Light {
@@ -133,16 +135,36 @@ mod tests {
         for light in [Light::Directional { toward, irradiance: Vec3::ONE }, lamp_at(centre + 10.0 * toward)] {
             let right = Vec3::Y.cross(toward).normalize();
             let corners = [Vec3::ZERO, right, toward.cross(right)].map(|corner| {
-                let clip = clip(views(&[light], BOUNDS)[0].view, centre + corner);
+                let clip = clip(views(&[light], BOUNDS, None)[0].view, centre + corner);
                 clip.truncate().truncate() / clip.w
             });
             assert!((corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) > 0.0, "{corners:?}");
         }
     }
 
+    /// What stands between the scene and the light is beyond no view's nearest depth.
+    #[test]
+    fn every_light_sees_what_stands_before_the_scene() {
+        let toward = Vec3::new(0.6, 0.8, 0.0);
+        let sun = Light::Directional { toward, irradiance: Vec3::ONE };
+        let place = BOUNDS.centre() + 30.0 * toward;
+        let before = Bounds { min: place - 1.0, max: place + 1.0 };
+        for light in [sun, lamp_at(BOUNDS.centre() + 50.0 * toward)] {
+            for corner in corners() {
+                let shifted = corner - BOUNDS.centre() + place;
+                let seen = |before| {
+                    let view = views(&[light], BOUNDS, before)[0].view;
+                    let clip = clip(view, shifted.clamp(place - 0.7, place + 0.7));
+                    (0.0..=clip.w).contains(&clip.z)
+                };
+                assert!(seen(Some(before)) && !seen(None), "{light:?} {corner}");
+            }
+        }
+    }
+
     #[test]
     fn only_a_lamp_that_is_near_has_six_views() {
-        let count = |position| views(&[lamp_at(position)], BOUNDS).len();
+        let count = |position| views(&[lamp_at(position)], BOUNDS, None).len();
         assert_eq!(
             [Vec3::new(100.0, 0.0, 0.0), Vec3::new(103.0, 0.0, 0.0), Vec3::new(103.2, 0.0, 0.0)].map(count),
             [6, 1, 1]
@@ -159,7 +181,7 @@ mod tests {
             inner_angle: 0.0,
             outer_angle,
         };
-        let extent = |light| views(&[light], BOUNDS)[0].view.extent;
+        let extent = |light| views(&[light], BOUNDS, None)[0].view.extent;
         assert!((extent(spot(0.05)) / 0.05f32.tan() - 1.0).abs() < 1e-3);
         assert!(extent(spot(1.5)) < 0.13);
         // Points within its cone.

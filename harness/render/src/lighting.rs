@@ -2,6 +2,7 @@
 //! frame when the first pipeline reads it, and only once.
 
 use super::bodies::{self, Body};
+use super::mesh_buffers::Shapes;
 use super::screen::{self, Picture};
 use super::{RenderError, Settings, environment};
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
@@ -14,7 +15,7 @@ use std::cell::OnceCell;
 
 /// Resources of the parts `surroundings`, `lights`, `harmonics`, `screen` and `bodies`.
 pub(super) struct Lighting<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     settings: &'a Settings,
     environment: OnceCell<Texture>,
     lights: OnceCell<Buffer>,
@@ -22,6 +23,8 @@ pub(super) struct Lighting<'a> {
     harmonics: OnceCell<Buffer>,
     screen: OnceCell<Picture>,
     bodies: OnceCell<Buffer>,
+    /// What keeps light from others.
+    pub(super) shapes: Shapes,
     /// Size of the largest picture in samples.
     size: [u32; 2],
 }
@@ -30,8 +33,8 @@ impl<'a> Lighting<'a> {
     /// Takes the scene's lights and bodies and the settings' environment, for pictures of up to this
     /// size in samples.
     pub(super) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
-        let (environment, lights, around, harmonics, screen, bodies) = Default::default();
-        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, size }
+        let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
+        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, shapes, size }
     }
 
     /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how
@@ -90,8 +93,8 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3 and 7 to 9 of group 0; 4 and 5
-    /// are shadow maps, 6 is the view of the screen.
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3 and 7 to 9 of group 0; 4, 5
+    /// and 10 are shadow maps, 6 is the view of the screen.
     pub(super) fn shared(
         &self,
         builder: &mut Builder<'_>,

@@ -6,7 +6,7 @@ mod seeds;
 use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
 use super::lighting::Lighting;
-use super::mesh_buffers::MeshBuffers;
+use super::mesh_buffers::{MeshBuffers, ShapeBuffers, Shapes};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::stage::Stage;
@@ -79,7 +79,8 @@ pub(super) fn pass(
         let add = Add { pipeline, seeds, paths, lit: &lit, largest, settings: part.settings };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
-            let (body, of_body) = builder.of_object(&drawn.name, |builder| add.body(builder, drawn, &mut maps))?;
+            let (body, of_body) =
+                builder.of_object(&drawn.name, |builder| add.body(builder, drawn, (&lighting.shapes, &mut maps)))?;
             drawn_bodies.push(body);
             bodies.extend(of_body);
         }
@@ -108,19 +109,20 @@ impl Add<'_> {
         &self,
         builder: &mut Builder<'_>,
         drawn: &Drawn<'_>,
-        maps: &mut ReflectiveShadowMaps,
+        (shapes, maps): (&Shapes, &mut ReflectiveShadowMaps),
     ) -> Result<(Body, Option<BodyPaths>), RenderError> {
         let Drawn { object: Object { mesh, material, .. }, name, .. } = drawn;
         let extinction = extinction(material, self.settings);
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.paths.cells);
-        let buffers = MeshBuffers::of(builder, drawn.object)?;
-        maps.add(builder, name, &buffers);
+        let shape = shapes.of(builder, name, drawn.object)?;
+        let buffers = MeshBuffers::of(builder, shape, drawn.object)?;
+        maps.add(builder, name, &buffers)?;
         let of_body = match &self.seeds {
-            Some(seeds) => Some(self.paths(builder, drawn, seeds, grid, extinction, &buffers)?),
+            Some(seeds) => Some(self.paths(builder, drawn, seeds, grid, extinction, shape)?),
             None => None,
         };
         let record = builder.record("material", record_of(grid, material, extinction, self.largest));
-        let MeshBuffers { positions, indices, normals, vertices } = buffers;
+        let MeshBuffers { shape: ShapeBuffers { positions, indices, vertices }, normals } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
         if let Some(of_body) = &of_body {
@@ -139,7 +141,7 @@ impl Add<'_> {
         seeds: &Seeds,
         grid: VoxelGrid,
         extinction: Vec3,
-        &MeshBuffers { positions, indices, .. }: &MeshBuffers,
+        ShapeBuffers { positions, indices, .. }: ShapeBuffers,
     ) -> Result<BodyPaths, RenderError> {
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
         let voxelizer = Voxelizer::new(builder, grid, mesh, &decisions.constants())?;

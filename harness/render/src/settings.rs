@@ -131,7 +131,7 @@ pub struct DiffusionOptions {
 
 impl Default for DiffusionOptions {
     fn default() -> Self {
-        Self { cycles: 4, warm: false }
+        Self { cycles: 2, warm: false }
     }
 }
 

@@ -1,71 +1,107 @@
-//! Shadows on objects that are shaded at their surface alone: the lights' views of all bodies
-//! except the clear ones, drawn once for the whole scene.
+//! Shadows on objects that are shaded at their surface alone: the lights' views of all bodies that may
+//! stand between a light and such an object, drawn once for the whole scene.
 
-use super::mesh_buffers::MeshBuffers;
+use super::colored_shadow::ColoredShadows;
+use super::lighting::Lighting;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
-use super::variant::Part;
+use super::variant::{self, Drawn, Part};
 use super::{RenderError, Rung, light_views};
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use lapidary_plan::Effect;
-use lapidary_scene::{Bounds, Light};
-use std::collections::HashMap;
+use lapidary_plan::casting::{self, Casting};
+use lapidary_scene::{Bounds, Object};
 
 /// Texels along a side of a map. A shadow's edge is one texel soft, and detail that stands out by
 /// less than a texel casts no shadow.
 const SIDE: u32 = 1024;
+/// The same if there are more than one view of some light: a lamp among the objects.
+const SIDE_AROUND: u32 = 512;
 
 /// The lights' maps.
 pub(super) struct Shadows {
-    maps: ReflectiveShadowMaps,
     views: Buffer,
-    /// Buffers of each body that casts shadows, by its name.
-    meshes: HashMap<String, MeshBuffers>,
+    /// Bodies that let no light through; `None` if none casts a shadow.
+    opaque: Option<ReflectiveShadowMaps>,
+    /// Clear stones; `None` if none casts a shadow.
+    stones: Option<ColoredShadows>,
 }
+
+/// A body that keeps light from others, with its unique name.
+pub(super) type Caster<'a> = (String, &'a Object);
 
 impl Shadows {
     /// Creates the maps for the objects of all parts; returns `None` if no object receives shadows.
     pub(super) fn of(
         builder: &mut Builder<'_>,
-        lights: &[Light],
+        lighting: &Lighting<'_>,
         parts: &[Part<'_>],
     ) -> Result<Option<Self>, RenderError> {
-        let all = || parts.iter().flat_map(|part| part.objects.iter().map(move |drawn| (part.rung, drawn)));
-        if !all().any(|(_, drawn)| drawn.decisions.has(Effect::Shadow)) {
-            return Ok(None);
-        }
-        let casts = |rung: &Rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_) | Rung::Diffusion(_));
-        let casting = || all().filter(|(rung, _)| casts(rung)).map(|(_, drawn)| drawn);
-        let bounds = Bounds::of(casting().flat_map(|drawn| drawn.object.mesh.positions.iter().copied()));
-        let views = light_views::views(lights, bounds);
-        let side = SIDE.min(builder.limits().max_texture_dimension_2d);
-        let mut maps = ReflectiveShadowMaps::new(builder, &views, side, "for shadows")?;
-        let views = reflective_shadow_map::view_buffer(builder, &views);
-        let mut meshes = HashMap::new();
-        for drawn in casting() {
-            let mesh = builder.of_object(&drawn.name, |builder| {
-                let mesh = MeshBuffers::of(builder, drawn.object)?;
-                maps.add(builder, &drawn.name, &mesh);
-                Ok::<_, RenderError>(mesh)
-            })?;
-            meshes.insert(drawn.name.clone(), mesh);
-        }
-        Ok(Some(Self { maps, views, meshes }))
+        let on_surfaces = || parts.iter().filter(|part| matches!(part.rung, Rung::Diffuse(_)));
+        let lit = || on_surfaces().flat_map(|part| &part.objects);
+        let opaque = casters(lighting, lit(), (Effect::Shadow, Casting::Opaque));
+        let stones = casters(lighting, lit(), (Effect::ColoredShadow, Casting::Clear));
+        let casting = opaque.iter().chain(&stones).map(|(_, body)| casting::bounds(body));
+        let Some(bounds) = casting.reduce(Bounds::joined) else { return Ok(None) };
+        let lights = &lighting.scene.lights;
+        let views = light_views::views(lights, bounds, None);
+        reflective_shadow_map::check_views(builder, &views)?;
+        let side = if views.len() > lights.len() { SIDE_AROUND } else { SIDE };
+        let side = side.min(builder.limits().max_texture_dimension_2d);
+        let buffer = reflective_shadow_map::view_buffer(builder, &views);
+        let opaque = if opaque.is_empty() {
+            None
+        } else {
+            let mut maps = ReflectiveShadowMaps::new(builder, &views, side, "for shadows")?;
+            for (name, body) in opaque {
+                let shape = lighting.shapes.of(builder, &name, body)?;
+                maps.add_caster(builder, &name, &shape)?;
+            }
+            Some(maps)
+        };
+        let stones = if stones.is_empty() { None } else { Some(ColoredShadows::new(builder, &views, side, &stones)?) };
+        Ok(Some(Self { views: buffer, opaque, stones }))
     }
 
-    /// Returns a body's positions, indices and normals, so that they need not be stored twice;
-    /// `None` if it casts no shadow.
-    pub(super) fn mesh(&self, name: &str) -> Option<&MeshBuffers> {
-        self.meshes.get(name)
-    }
-
-    /// Returns the resources of bindings 4 and 5 of group 0 that `pipeline` reads.
+    /// Returns the resources of bindings 4, 5 and 10 of group 0 that `pipeline` reads.
     pub(super) fn shared(&self, builder: &Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
-        let all = [(4, self.views.into()), (5, self.maps.layers())];
+        let mut all = vec![(4, self.views.into())];
+        all.extend(self.opaque.as_ref().map(|maps| (5, maps.layers())));
+        all.extend(self.stones.as_ref().map(|stones| (10, stones.layers())));
         all.into_iter().filter(|(binding, _)| builder.binds(pipeline, 0, *binding)).collect()
     }
 
     /// Draws all maps.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) {
-        self.maps.encode(builder);
+        if let Some(maps) = &self.opaque {
+            maps.encode(builder);
+        }
+        if let Some(stones) = &self.stones {
+            stones.encode(builder);
+        }
     }
+}
+
+/// Returns the bodies of this kind that may keep light from those with this effect.
+fn casters<'a, 'b: 'c, 'c>(
+    lighting: &Lighting<'a>,
+    lit: impl Iterator<Item = &'c Drawn<'b>>,
+    (effect, kind): (Effect, Casting),
+) -> Vec<Caster<'a>> {
+    let lit: Vec<_> = lit
+        .filter(|drawn| drawn.decisions.has(effect))
+        .map(|drawn| (drawn.object, casting::bounds(drawn.object)))
+        .collect();
+    casters_on(lighting, &lit, kind)
+}
+
+/// Returns the bodies of this kind that may keep light from some of `lit`, each given with its box.
+pub(super) fn casters_on<'a>(lighting: &Lighting<'a>, lit: &[(&Object, Bounds)], kind: Casting) -> Vec<Caster<'a>> {
+    let scene = lighting.scene;
+    let casts = |body: &Object| {
+        let caster = (body, casting::bounds(body));
+        lit.iter().any(|receiver| casting::casts(caster, *receiver, &scene.lights))
+    };
+    let all = scene.objects.iter().zip(variant::names(scene));
+    let wanted = all.filter(|(body, _)| Casting::of(body) == kind && casts(body));
+    wanted.map(|(body, name)| (name, body)).collect()
 }

@@ -121,15 +121,13 @@ fn add(
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
     let record = builder.record("material", record_of(material));
-    // Bodies that cast shadows already have buffers.
-    let cast = light.1.and_then(|shadows| shadows.mesh(name));
+    let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
         .map(|(binding, what, contents)| {
-            let buffer = match (binding, cast) {
-                (1, Some(mesh)) => mesh.positions,
-                (2, Some(mesh)) => mesh.indices,
-                (3, Some(mesh)) => mesh.normals,
+            let buffer = match binding {
+                1 => shape.positions,
+                2 => shape.indices,
                 _ => builder.storage(what, contents),
             };
             (binding, buffer)

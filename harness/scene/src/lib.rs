@@ -124,6 +124,12 @@ impl Bounds {
         points.fold(first, grow)
     }
 
+    /// Returns the smallest box around both.
+    #[must_use]
+    pub fn joined(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     /// Returns the centre of the box.
     #[must_use]
     pub fn centre(&self) -> Vec3 {

@@ -105,6 +105,18 @@ pub fn open_edges(mesh: &Mesh) -> usize {
     open + turned
 }
 
+/// Depth of a dent that still counts as convex, as a share of the radius: the width of a texel of a shadow
+/// map with 1,024 texels, in which smaller ones do not show.
+const DENT: f64 = 2.0 / 1024.0;
+
+/// Whether light outside can meet a mesh twice: false for a flat sheet and for a single closed surface that
+/// is convex but for dents of 1/512 of its radius.
+#[must_use]
+pub fn shades_itself(mesh: &Mesh) -> bool {
+    let welded = Welded::of(mesh);
+    !welded.is_flat() && !welded.is_convex()
+}
+
 /// A triangle by the numbers of its places.
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
@@ -220,6 +232,43 @@ impl Welded {
             parts[part].push(number);
         }
         parts
+    }
+
+    /// Whether the surface is closed, connected, and nowhere lies behind its own tangent plane by more
+    /// than [`DENT`], as far as its outermost vertices tell.
+    fn is_convex(&self) -> bool {
+        if self.unbalanced_edges() != (0, 0) || self.parts().len() != 1 {
+            return false;
+        }
+        let mut normals = vec![DVec3::ZERO; self.places.len()];
+        for triangle in &self.triangles {
+            triangle.corners.iter().for_each(|corner| normals[*corner] += triangle.across);
+        }
+        let outermost = self.outermost();
+        let size = self.places.iter().copied().reduce(DVec3::max).zip(self.places.iter().copied().reduce(DVec3::min));
+        let tolerance = DENT * size.map_or(0.0, |(most, least)| 0.5 * (most - least).length());
+        self.places.iter().zip(normals).all(|(place, normal)| {
+            let normal = normal.normalize_or_zero();
+            outermost.iter().all(|other| normal.dot(other - place) <= tolerance)
+        })
+    }
+
+    /// Returns the outermost vertices in directions that spread evenly over the sphere, or all of few.
+    fn outermost(&self) -> Vec<DVec3> {
+        const DIRECTIONS: usize = 256;
+        if self.places.len() <= DIRECTIONS {
+            return self.places.clone();
+        }
+        let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        let directions = (0..DIRECTIONS).map(|number| {
+            let height = 1.0 - (2.0 * number as f64 + 1.0) / DIRECTIONS as f64;
+            let (sine, cosine) = (golden * number as f64).sin_cos();
+            (DVec3::new(cosine, sine, 0.0) * (1.0 - height * height).sqrt()).with_z(height)
+        });
+        let farthest = |direction: DVec3| {
+            self.places.iter().copied().max_by(|a, b| direction.dot(*a).total_cmp(&direction.dot(*b)))
+        };
+        directions.filter_map(farthest).collect()
     }
 
     fn is_flat(&self) -> bool {

@@ -121,13 +121,15 @@ export class Frame {
       const compute = { module, entryPoint: first };
       return this.device.createComputePipelineAsync({ label: row.name, layout: 'auto', compute });
     }
+    const component = (operation) => ({ srcFactor: 'one', dstFactor: 'one', operation });
+    const blend = row.blend ? { color: component(row.blend.color), alpha: component(row.blend.alpha) } : undefined;
     return this.device.createRenderPipelineAsync({
       label: row.name,
       layout: 'auto',
       vertex: { module, entryPoint: first },
       primitive: { topology: 'triangle-list', frontFace: 'ccw', cullMode: row.cull },
       depthStencil: row.depth ? { format: row.depth, depthWriteEnabled: true, depthCompare: 'less' } : undefined,
-      fragment: { module, entryPoint: second, targets: row.targets.map((format) => ({ format })) },
+      fragment: { module, entryPoint: second, targets: row.targets.map((format) => ({ format, blend })) },
     });
   }
 

@@ -27,9 +27,9 @@ pub(super) struct Asked {
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
     /// Draw effects that no material calls for. shadow: lights cast shadows on everything that is
-    /// drawn by its surface alone. cdrf, optical_path: draw all scattering materials by this
-    /// technique, whatever their thickness relative to the mean free path.
-    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, SHADOW])]
+    /// drawn by its surface alone. cdrf, optical_path, diffusion: draw all scattering materials by
+    /// this technique, whatever their thickness relative to the mean free path.
+    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW])]
     with: Vec<String>,
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
@@ -41,6 +41,7 @@ pub(super) struct Asked {
 
 const CDRF: &str = "cdrf";
 const OPTICAL_PATH: &str = "optical_path";
+const DIFFUSION: &str = "diffusion";
 const SHADOW: &str = "shadow";
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -79,13 +80,14 @@ impl Asked {
                 Environment::Map(map)
             }
         };
-        let scattering = match [CDRF, OPTICAL_PATH].map(|name| self.is_with(name)) {
-            [true, true] => {
-                return Err(Failure(format!("--with {CDRF} and {OPTICAL_PATH}: a body is drawn by one of them")));
+        let techniques =
+            [(CDRF, Scattering::Cdrf), (OPTICAL_PATH, Scattering::OpticalPath), (DIFFUSION, Scattering::Diffusion)];
+        let mut asked = techniques.into_iter().filter(|(name, _)| self.is_with(name));
+        let scattering = match (asked.next(), asked.next()) {
+            (Some((one, _)), Some((other, _))) => {
+                return Err(Failure(format!("--with {one} and {other}: a body is drawn by one of them")));
             }
-            [true, false] => Some(Scattering::Cdrf),
-            [false, true] => Some(Scattering::OpticalPath),
-            [false, false] => None,
+            (one, _) => one.map(|(_, scattering)| scattering),
         };
         let shadows = self.is_with(SHADOW);
         let (width, height) = self.size;

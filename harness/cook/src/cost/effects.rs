@@ -46,6 +46,13 @@ fn one(name: &str) -> Result<Scene, CostError> {
     Ok(Scene { objects: scene.objects.into_iter().take(1).collect(), ..scene })
 }
 
+/// Returns the vitrine with only its table and one body on it.
+fn behind(body: &str) -> Result<Scene, CostError> {
+    let mut scene = Scene::named("vitrine").map_err(CostError::from)?;
+    scene.objects.retain(|object| object.name == "table" || object.name == body);
+    Ok(scene)
+}
+
 /// Returns the scene with only its first object, as one copy at its own place.
 fn copied(name: &str) -> Result<Scene, CostError> {
     let scene = one(name)?;
@@ -176,6 +183,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             scene: one("wax_bunny")?,
             settings: settings("lambert-shadowed"),
             effects: &[Effect::Shadow, Effect::Environment, Effect::Microfacet],
+            stands_on: &[],
+        },
+        Case {
+            name: "vitrine, table and ruby",
+            scene: behind("ruby")?,
+            settings: settings("by-material"),
+            effects: &[Effect::ColoredShadow],
             stands_on: &[],
         },
         Case {

@@ -49,7 +49,9 @@ fn shown(technique: Technique) -> &'static str {
         Technique::Convex => "clear, convex",
         Technique::Concave => "clear, not convex",
         Technique::Cdrf => "curvature",
+        Technique::Translucent => "light through the body",
         Technique::OpticalPath => "optical paths",
+        Technique::Diffusion => "diffusion",
         Technique::Opaque => "opaque",
         Technique::ThinWall => "thin wall",
     }

@@ -4,14 +4,14 @@
 use super::optical_path::{Measured, WALKED, Walks, settings};
 use super::table::{Goal, Table, figure};
 use super::timing::{self, Timed};
-use super::{CostError, Ladder, Options, Progress, Report, Row};
+use super::{CostError, Ladder, Options, Progress, Report, Row, quality};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
+use lapidary_plan::Technique;
 use lapidary_scene::Scene;
 
 /// The ladder.
-pub const LADDER: Ladder =
-    Ladder { name: "translucent", tables: |report| vec![table(report), goals(report)], plots: |_| Vec::new(), whole };
+pub const LADDER: Ladder = Ladder { name: "translucent", tables, plots: |_| Vec::new(), whole };
 
 /// The rungs: Lambert's law, optical paths, diffusion, and the walks themselves.
 pub const RUNGS: [&str; 10] = [
@@ -67,6 +67,11 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         }
     }
     Ok(report)
+}
+
+fn tables(report: &Report) -> Vec<Table> {
+    let quality = quality::table("translucent_quality", report, &[Technique::Translucent, Technique::Diffusion]);
+    vec![table(report), goals(report), quality]
 }
 
 fn whole(report: &Report) -> Result<(), String> {

@@ -124,6 +124,13 @@ fn one(name: &str) -> Scene {
     Scene { objects: scene.objects[..1].to_vec(), ..scene }
 }
 
+/// Returns the vitrine with only its table and one body on it.
+fn behind(body: &str) -> Scene {
+    let mut scene = named("vitrine");
+    scene.objects.retain(|object| object.name == "table" || object.name == body);
+    scene
+}
+
 fn cases() -> Vec<Case> {
     let none = || [vec![], vec![], vec![]];
     let of_cells = vec![
@@ -312,7 +319,7 @@ fn cases() -> Vec<Case> {
         ),
         case(
             Effect::Shadow,
-            one("wax"),
+            one("wax_bunny"),
             of_rung("lambert-shadowed"),
             [
                 vec![
@@ -324,6 +331,12 @@ fn cases() -> Vec<Case> {
                 vec!["reflective_shadow_map"],
                 vec!["reflective_shadow_map"],
             ],
+        ),
+        case(
+            Effect::ColoredShadow,
+            behind("ruby"),
+            settings(),
+            [vec!["stone in the light", "shadows of clear stones"], vec!["colored_shadow"], vec!["colored_shadow"]],
         ),
         case(Effect::Environment, one("wax"), of_rung("accurate"), [vec!["harmonics"], vec![], vec![]]),
         case(
@@ -435,7 +448,7 @@ fn what_is_off_says_why() {
         medium.absorption = Vec3::splat(0.01);
         medium.density = Density::Uniform;
     }
-    assert_eq!(off(&grey, &settings, Effect::Color), "scattering, absorption and lights are grey");
+    assert_eq!(off(&grey, &of_rung("godunov-16"), Effect::Color), "scattering, absorption and lights are grey");
     // A body with only flat facets has no curvature.
     let mut flat = one("wax");
     let mesh = named("octahedron").objects.remove(0).mesh;
@@ -454,9 +467,11 @@ fn what_is_off_says_why() {
 type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
 
 fn parts(scene: &Scene) -> Parts {
-    // What leaves a stone meets no other body: with others beside it, a stone takes more.
+    // What leaves a stone meets no other body, and no body casts a shadow: with others beside it, a
+    // body takes more.
     let apart = GemOptions { outside: Some(Outside::Environment), ..GemOptions::default() };
-    let listing = planned(scene, &Settings { gem: apart, ..settings() });
+    let without = Effects::of(&[Effect::Shadow, Effect::ColoredShadow]);
+    let listing = planned(scene, &Settings { gem: apart, without, ..settings() });
     // Pipelines are numbered in the order of their creation, so they are compared by contents.
     let key = |name: &str| {
         let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == name);
@@ -540,7 +555,7 @@ fn the_reference_takes_nothing_of_a_device() {
 /// maps are one texel each.
 #[test]
 fn ways_that_are_left_out_take_nothing_along() {
-    let left_out = Settings { without: Effects::of(&[Effect::OpticalPath]), ..settings() };
+    let left_out = Settings { without: Effects::of(&[Effect::OpticalPath]), ..of_rung("godunov-64") };
     let bunny = one("bunny");
     for effect in [Effect::Surface, Effect::Color, Effect::ExtinctionPerVoxel] {
         assert_eq!(off(&bunny, &left_out, effect), "optical_path is left out", "{effect}");
@@ -567,7 +582,7 @@ fn shape_and_quality_choose_the_rung() {
         ("bunny_stone", Technique::Concave),
         ("prism_chain", Technique::Concave),
         ("wax", Technique::Cdrf),
-        ("bunny", Technique::OpticalPath),
+        ("bunny", Technique::Translucent),
     ] {
         let wanted = Quality::ALL.map(|quality| technique.rung(quality).to_string());
         assert_eq!(all(&one(name)), wanted, "{name}");

@@ -5,10 +5,10 @@ use crate::pixels::rays;
 use glam::{DVec3, Vec3};
 use lapidary_bvh_trace::BvhTraceHit;
 use lapidary_bvh_trace::traversal::{self, met};
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::Settings;
-use lapidary_scene::surfaces::{sphere, torus};
+use lapidary_scene::surfaces::{rounded_box, sphere, torus};
 use lapidary_scene::{Bvh, Light, Material, Mesh, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -260,6 +260,74 @@ fn a_reflectance_loses_what_fell_on_the_point_itself() {
     }
     // Lambert's law is the reflectance with a width of 0.
     assert_eq!(draw(true, "lambert"), draw(false, "lambert-shadowed"));
+}
+
+/// A clear ball over a table takes from the sun what Fresnel's law and Beer's law say of the straight way
+/// through it.
+#[test]
+fn light_through_a_clear_ball_is_colored_by_its_way_inside() {
+    const RADIUS: f32 = 8.0;
+    let slate = Scene::named("vitrine").expect("built in").objects[0].material.clone();
+    let color = Vec3::new(0.9, 0.3, 0.1);
+    let clear = Material {
+        base_color: Vec3::new(0.9, 1.0, 0.8),
+        attenuation_color: color,
+        attenuation_distance: RADIUS,
+        ior: 1.5,
+        ..Scene::named("octahedron").expect("built in").objects[0].material.clone()
+    };
+    let table = rounded_box(DVec3::new(40.0, 1.0, 40.0), 0.1, 2).placed(glam::DQuat::IDENTITY, -DVec3::Y);
+    let place = DVec3::new(0.0, 20.0, 0.0);
+    let ball = sphere(f64::from(RADIUS), 512).placed(glam::DQuat::IDENTITY, place);
+    let toward = DVec3::new(0.3, 0.9, -0.2).normalize();
+    let sun = Light::Directional { toward: toward.as_vec3(), irradiance: Vec3::splat(2.0) };
+    let lamp_place = place + 60.0 * toward;
+    let lamp = Light::Point { position: lamp_place.as_vec3(), intensity: Vec3::splat(8_000.0) };
+    for light in [sun, lamp] {
+        let camera = lapidary_scene::Camera::upright(Vec3::new(1.0, 90.0, 2.0), Vec3::ZERO, 0.8);
+        let objects =
+            vec![Object::new("table", table.clone(), slate.clone()), Object::new("ball", ball.clone(), clear.clone())];
+        let scene = Scene { objects, lights: vec![light], camera, ..Scene::named("vitrine").expect("built in") };
+        let draw = |without: &[Effect]| {
+            let usual = settings("lambert");
+            let without = usual.without.and(Effects::of(without));
+            let settings = Settings { rung: Rung::ByMaterial, without, ..usual };
+            render::render(super::gpu(), &scene, &settings).expect("rendered")
+        };
+        let [lit, shadowed] = [draw(&[Effect::ColoredShadow]), draw(&[])];
+        let eye = scene.camera.eye.as_dvec3();
+        let mut compared = 0;
+        for (index, (direction, _)) in rays(&scene, &lit).into_iter().enumerate() {
+            let point = eye - eye.y / direction.y * direction;
+            let beside_eye = (place - eye).reject_from(direction).length();
+            // Facets and texels blur the shadow's edge, where the way changes fast.
+            let toward = light.arrival(point).direction;
+            let aside = (place - point).reject_from(toward).length() / f64::from(RADIUS);
+            if point.abs().max_element() > 39.0 || beside_eye < f64::from(RADIUS) || (0.93..1.03).contains(&aside) {
+                continue;
+            }
+            let expected = if aside >= 1.0 { DVec3::ONE } else { through(aside, (&clear, f64::from(RADIUS))) };
+            for channel in 0..3 {
+                let found = f64::from(shadowed.linear[index][channel]) / f64::from(lit.linear[index][channel]);
+                assert!(
+                    (found - expected[channel]).abs() < 0.012,
+                    "{light:?}, {aside} aside, channel {channel}: {found}, {expected}"
+                );
+            }
+            compared += usize::from(aside < 1.0);
+        }
+        println!("{compared} pixels");
+        assert!(compared > 300, "{compared}");
+    }
+}
+
+/// Returns the light that passes a ball straight on, at a distance from its centre in radii.
+fn through(aside: f64, (material, radius): (&Material, f64)) -> DVec3 {
+    let cosine = (1.0 - aside * aside).sqrt();
+    let reflected = f64::from(lapidary_fresnel::dielectric(cosine as f32, material.ior));
+    let way = 2.0 * radius * cosine / f64::from(material.attenuation_distance);
+    let inside = material.attenuation_color.as_dvec3().powf(way) * material.base_color.as_dvec3();
+    inside * (1.0 - reflected).powi(2)
 }
 
 /// Without lights there are no shadows, and clear stone casts none on the objects behind it.

@@ -1,6 +1,6 @@
 //! The recipe `diffusion_cells`: a body as cells, from voxels of half the spacing and from its mesh.
 
-use super::super::mesh_buffers::MeshBuffers;
+use super::super::mesh_buffers::ShapeBuffers;
 use super::Matter;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
 use crate::record::Record;
@@ -20,7 +20,7 @@ const LARGE_GROUPS: u32 = 32;
 /// Pipelines and buffers for a body's cells.
 pub(super) struct Cells {
     pub(super) voxelizer: Voxelizer,
-    mesh: MeshBuffers,
+    mesh: ShapeBuffers,
     /// Which eighths of each voxel are filled, and the node's depth: a word for each voxel.
     pub(super) nodes: Buffer,
     /// Conductances to the next voxels: three f32 for each voxel.
@@ -44,7 +44,7 @@ impl Cells {
     pub(super) fn new(
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
-        (shape, mesh): (&Mesh, &MeshBuffers),
+        (shape, mesh): (&Mesh, &ShapeBuffers),
         constants: &[(&str, f64)],
         (matter, material): (Matter, &Material),
         (bits, density): (Buffer, Option<Buffer>),

@@ -39,6 +39,8 @@ pub(super) struct Levels {
     pub(super) packed: Buffer,
     coarsen: Vec<Dispatch>,
     list: Vec<Dispatch>,
+    /// The cycle from no light at all: on the coarser grids alone.
+    first: Vec<Dispatch>,
     cycle: Vec<Dispatch>,
     pack: Dispatch,
 }
@@ -79,29 +81,35 @@ impl Levels {
         let list =
             made.iter().map(|level| level.pass_over_all(builder, kernels.list, &[], level.cells.div_ceil(TILE).pow(3)));
         let list = list.collect();
-        let mut cycle = Vec::new();
         let sweeps =
             |builder: &mut Builder<'_>, cycle: &mut Vec<Dispatch>, level: &Level, colors: [usize; 2], count| {
                 for _ in 0..count {
                     cycle.extend(colors.map(|color| level.pass_over_tiles(builder, kernels.sweep, color, &[])));
                 }
             };
-        for number in 0..last {
-            let (level, coarser) = (&made[number], &made[number + 1]);
-            sweeps(builder, &mut cycle, level, [0, 1], SWEEPS);
-            let coarser = [(2, coarser.fluence.into()), (3, coarser.right.into())];
-            cycle.push(level.pass_over_tiles(builder, kernels.restrict, 0, &coarser));
-        }
-        // The coarsest level's one cell.
-        sweeps(builder, &mut cycle, &made[last], [0, 1], 1);
-        for number in (0..last).rev() {
-            let (level, coarser) = (&made[number], &made[number + 1]);
-            cycle.push(level.pass_over_tiles(builder, kernels.prolong, 0, &[(2, coarser.fluence.into())]));
-            sweeps(builder, &mut cycle, level, [1, 0], SWEEPS);
-        }
+        let cycle_of = |builder: &mut Builder<'_>, finest: usize| {
+            let mut cycle = Vec::new();
+            let count = |number| if number == 0 { finest } else { SWEEPS };
+            for number in 0..last {
+                let (level, coarser) = (&made[number], &made[number + 1]);
+                sweeps(builder, &mut cycle, level, [0, 1], count(number));
+                let coarser = [(2, coarser.fluence.into()), (3, coarser.right.into())];
+                cycle.push(level.pass_over_tiles(builder, kernels.restrict, 0, &coarser));
+            }
+            // The coarsest level's one cell.
+            sweeps(builder, &mut cycle, &made[last], [0, 1], 1);
+            for number in (0..last).rev() {
+                let (level, coarser) = (&made[number], &made[number + 1]);
+                cycle.push(level.pass_over_tiles(builder, kernels.prolong, 0, &[(2, coarser.fluence.into())]));
+                sweeps(builder, &mut cycle, level, [1, 0], count(number));
+            }
+            cycle
+        };
+        let first = cycle_of(builder, 0);
+        let cycle = cycle_of(builder, SWEEPS);
         let packing = [(4, cells.nodes.into()), (5, packed.into())];
         let pack = made[0].pass_over_tiles(builder, kernels.pack, 0, &packing);
-        Ok(Self { levels: made, options, fresh, packed, coarsen, list, cycle, pack })
+        Ok(Self { levels: made, options, fresh, packed, coarsen, list, first, cycle, pack })
     }
 
     /// The right side of the finest level's equations: four f32 for each voxel.
@@ -125,6 +133,9 @@ impl Levels {
         }
         builder.clear(self.packed);
         builder.compute(RECIPE, self.coarsen.iter().chain(&self.list).cloned().collect(), 1);
+        if !self.options.warm {
+            builder.compute(RECIPE, self.first.clone(), 1);
+        }
         builder.compute(RECIPE, self.cycle.clone(), self.options.cycles);
         builder.compute(RECIPE, vec![self.pack.clone()], 1);
     }

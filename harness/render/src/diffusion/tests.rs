@@ -36,7 +36,7 @@ impl Lone {
         let mut builder = Builder::new(Some(gpu()));
         let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), cells);
         let matter = Matter::of(&object.material, grid);
-        let mesh = MeshBuffers::of(&mut builder, &object).expect("buffers");
+        let mesh = ShapeBuffers::of(&mut builder, &object).expect("buffers");
         let bits = Cells::matter(&mut builder, grid);
         let of_body = (matter, &object.material);
         let cells =
@@ -166,7 +166,8 @@ fn what_is_put_in_leaves_or_is_absorbed() {
         (tilted.placed(turn, DVec3::ZERO), (15.0, 0.001)),
         (tilted.placed(turn, DVec3::ZERO), (200.0, 0.0)),
     ] {
-        for (cycles, bound, balance) in [(4, 5e-3, 3e-3), (14, 5e-5, 1e-4)] {
+        // A cycle leaves a third at most, and the first one, on the coarser grids, is not counted.
+        for (cycles, bound, balance) in [(2, 4e-2, 2e-2), (14, 5e-5, 1e-4)] {
             let lone = Lone::of(mesh.clone(), 48, matter, cycles);
             let right = everywhere(&lone, matter.0.into());
             let (residual, unaccounted) = lone.residual(&right, &lone.solve(&right));

@@ -172,20 +172,21 @@ impl<'gpu> Builder<'gpu> {
     /// # Errors
     /// If the text is not valid.
     pub fn render_pipeline(&mut self, from: &PipelineSource<'_>) -> Result<PipelineId, ShaderError> {
-        self.render_pipeline_culling(from, from.depth.map(|_| wgpu::Face::Back))
+        self.render_pipeline_with(from, from.depth.map(|_| wgpu::Face::Back), None)
     }
 
-    /// Adds a graphics pipeline that culls these faces, if any.
+    /// Adds a graphics pipeline that culls these faces and blends, if at all.
     ///
     /// # Errors
     /// If the text is not valid.
-    pub fn render_pipeline_culling(
+    pub fn render_pipeline_with(
         &mut self,
         from: &PipelineSource<'_>,
         cull: Option<wgpu::Face>,
+        blend: Option<Blend>,
     ) -> Result<PipelineId, ShaderError> {
         let shader = Shader::new(from.recipe, from.source, &from.entries, from.constants)?;
-        let kind = PipelineKind::Render { targets: from.formats.to_vec(), depth: from.depth, cull };
+        let kind = PipelineKind::Render { targets: from.formats.to_vec(), depth: from.depth, cull, blend };
         Ok(self.pipeline(from.recipe, from.source, shader, kind))
     }
 

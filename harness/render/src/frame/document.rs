@@ -106,8 +106,14 @@ struct PipelineRow {
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum PipelineFields {
-    Render { targets: Vec<String>, depth: Option<String>, cull: &'static str },
+    Render { targets: Vec<String>, depth: Option<String>, cull: &'static str, blend: Option<BlendFields> },
     Compute,
+}
+
+#[derive(Serialize)]
+struct BlendFields {
+    color: &'static str,
+    alpha: &'static str,
 }
 
 #[derive(Serialize)]
@@ -269,7 +275,7 @@ fn resource_row((place, resource): (usize, &Resource)) -> ResourceRow {
 fn pipeline_row((place, pipeline): (usize, &Pipeline)) -> PipelineRow {
     let shader: &Shader = &pipeline.shader;
     let kind = match &pipeline.kind {
-        PipelineKind::Render { targets, depth, cull } => PipelineFields::Render {
+        PipelineKind::Render { targets, depth, cull, blend } => PipelineFields::Render {
             targets: targets.iter().copied().map(format_name).collect(),
             depth: depth.map(format_name),
             cull: match cull {
@@ -277,6 +283,7 @@ fn pipeline_row((place, pipeline): (usize, &Pipeline)) -> PipelineRow {
                 Some(wgpu::Face::Front) => "front",
                 Some(wgpu::Face::Back) => "back",
             },
+            blend: blend.map(|Blend { color, alpha }| BlendFields { color: operation(color), alpha: operation(alpha) }),
         },
         PipelineKind::Compute => PipelineFields::Compute,
     };
@@ -287,6 +294,16 @@ fn pipeline_row((place, pipeline): (usize, &Pipeline)) -> PipelineRow {
         entries: shader.entries().to_vec(),
         overrides: shader.overrides().iter().cloned().collect(),
         kind,
+    }
+}
+
+fn operation(operation: wgpu::BlendOperation) -> &'static str {
+    match operation {
+        wgpu::BlendOperation::Add => "add",
+        wgpu::BlendOperation::Subtract => "subtract",
+        wgpu::BlendOperation::ReverseSubtract => "reverse-subtract",
+        wgpu::BlendOperation::Min => "min",
+        wgpu::BlendOperation::Max => "max",
     }
 }
 

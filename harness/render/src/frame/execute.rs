@@ -351,7 +351,7 @@ fn compiled(device: &wgpu::Device, pipeline: &Pipeline) -> Compiled {
     let label = Some(&*pipeline.name);
     let module = device.create_shader_module(pipeline.shader.module_descriptor());
     let entry = |place: usize| pipeline.shader.entries().get(place).map(String::as_str);
-    let PipelineKind::Render { targets, depth, cull } = &pipeline.kind else {
+    let PipelineKind::Render { targets, depth, cull, blend } = &pipeline.kind else {
         return Compiled::Compute(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label,
             layout: None,
@@ -361,7 +361,15 @@ fn compiled(device: &wgpu::Device, pipeline: &Pipeline) -> Compiled {
             cache: None,
         }));
     };
-    let targets: Vec<Option<wgpu::ColorTargetState>> = targets.iter().map(|format| Some((*format).into())).collect();
+    let component = |operation| wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation,
+    };
+    let blend =
+        blend.map(|Blend { color, alpha }| wgpu::BlendState { color: component(color), alpha: component(alpha) });
+    let target = |format: &wgpu::TextureFormat| wgpu::ColorTargetState { blend, ..(*format).into() };
+    let targets: Vec<Option<wgpu::ColorTargetState>> = targets.iter().map(|format| Some(target(format))).collect();
     Compiled::Render(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label,
         layout: None,

@@ -218,9 +218,20 @@ pub enum PipelineKind {
         depth: Option<wgpu::TextureFormat>,
         /// Faces that are culled; `None` if all are drawn.
         cull: Option<wgpu::Face>,
+        /// How a texel is joined with what is there; `None` if it replaces that.
+        blend: Option<Blend>,
     },
     /// The shader's only entry point.
     Compute,
+}
+
+/// How colour and alpha are joined with what is there, both with factors of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blend {
+    /// Operation on the colour.
+    pub color: wgpu::BlendOperation,
+    /// Operation on alpha.
+    pub alpha: wgpu::BlendOperation,
 }
 
 /// Resources that a pipeline reads and writes in one group.

@@ -141,7 +141,15 @@ impl Host<'_> {
             let of = ComputePipelineDescriptor { label, layout, module, entry_point, compilation_options, cache };
             return Pipeline::Compute(self.device.create_compute_pipeline(&of));
         }
-        let targets: Vec<_> = list(&row["targets"]).iter().map(|of| Some(format(of).into())).collect();
+        let component = |of: &str| BlendComponent {
+            src_factor: BlendFactor::One,
+            dst_factor: BlendFactor::One,
+            operation: named(&row["blend"][of], &[("add", BlendOperation::Add), ("min", BlendOperation::Min)]),
+        };
+        let blends = row["blend"].is_object();
+        let blend = blends.then(|| BlendState { color: component("color"), alpha: component("alpha") });
+        let target = |of| Some(ColorTargetState { blend, ..format(of).into() });
+        let targets: Vec<_> = list(&row["targets"]).iter().map(target).collect();
         let depth_stencil = row["depth"].as_str().map(|_| DepthStencilState {
             format: format(&row["depth"]),
             depth_write_enabled: Some(true),

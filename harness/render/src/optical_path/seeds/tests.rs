@@ -92,7 +92,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let scene = Scene { lights: lights(), ..Scene::named("bunny").expect("built in") };
     let settings = Settings::of_size(8, 8);
     let grid = VoxelGrid::about(bounds(), CELLS);
-    let views = light_views::views(&lights(), bounds());
+    let views = light_views::views(&lights(), bounds(), None);
     assert_eq!(views.len(), 8);
     let texels = texels(views.len() * (SIDE * SIDE) as usize, grid);
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
