@@ -488,7 +488,7 @@ fn of_parts() -> Vec<Formula> {
             let (milne, angle) = (draws.between(0.7, 4.0), draws.between(0.8, 1.1));
             (eye, light, law, gamma, milne, draws.between(0.5, 4.0), draws.between(0.3, 2.0), angle)
         })
-        .benign(1e-3)
+        .benign(2e-5)
         .build(),
     ]
 }
