@@ -290,7 +290,7 @@ pub fn run(cases: u32) -> Result<Tally, String> {
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let outcome = runner.run(&(any::<Index>(), edits()), |(seed, edits)| {
-        let bytes = mutate(seed.get(&seeds), &edits);
+        let bytes = mutate(&seeds[seed.index(seeds.len())], &edits);
         let loaded = check(&bytes).map_err(TestCaseError::fail)?;
         let mut counts = tally.get();
         if loaded {
