@@ -82,6 +82,12 @@ struct DiffusionSample {
     fluence: vec3f,
     // Their mean depth in voxel spacings.
     depth: f32,
+    // How fluence and depth vary together, and the variance of the depth.
+    covariance: vec3f,
+    variance: f32,
+    // The least depth and the largest.
+    shallowest: f32,
+    deepest: f32,
     // Their mean density; 0 where there is no matter about the point.
     density: f32,
     // The filled share of the space about the point: about 1/2 at the surface of a thick part.
@@ -93,16 +99,25 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
     let cells = body.grid.cells;
     let low = floor(place - 0.5f);
     let fraction = place - 0.5f - low;
-    var found = DiffusionSample(vec3f(0.0f), 0.0f, 0.0f, 0.0f);
+    var found: DiffusionSample;
+    found.shallowest = DIFFUSION_NODE_DEPTH;
+    var products = vec3f(0.0f);
+    var square = 0.0f;
     for (var corner = 0u; corner < 8u; corner++) {
         let step = vec3f(f32(corner & 1u), f32((corner >> 1u) & 1u), f32(corner >> 2u));
         let voxel = vec3u(clamp(low + step, vec3f(0.0f), vec3f(f32(cells - 1u))));
         let index = voxel.x + cells * (voxel.y + cells * voxel.z);
         let word = packed[index];
         let weight = diffusion_weight(fraction, corner, diffusion_packed_volume(word));
+        let fluence = weight * diffusion_packed_fluence(word);
+        let depth = diffusion_packed_depth(word);
         found.filled += weight;
-        found.fluence += weight * diffusion_packed_fluence(word);
-        found.depth += weight * diffusion_packed_depth(word);
+        found.fluence += fluence;
+        found.depth += weight * depth;
+        products += fluence * depth;
+        square += weight * depth * depth;
+        found.shallowest = select(found.shallowest, min(found.shallowest, depth), weight > 0.0f);
+        found.deepest = select(found.deepest, max(found.deepest, depth), weight > 0.0f);
         if (EFFECT_EXTINCTION_PER_VOXEL) {
             found.density += weight * density[index];
         }
@@ -111,9 +126,22 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
     if (!EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
         found.density = found.filled;
     }  //+extinction_per_voxel
+    found.fluence *= scale;
+    found.depth *= scale;
+    found.covariance = scale * products - found.depth * found.fluence;
+    found.variance = max(scale * square - found.depth * found.depth, 0.0f);
     // A density of 0 stands for no matter.
-    let density = select(0.0f, max(scale * found.density, DIFFUSION_THINNEST), found.filled > 0.0f);
-    return DiffusionSample(scale * found.fluence, scale * found.depth, density, found.filled);
+    found.density = select(0.0f, max(scale * found.density, DIFFUSION_THINNEST), found.filled > 0.0f);
+    return found;
+}
+
+// The same nodes with weights that put their mean at a depth below the surface, as near as they can.
+fn diffusion_at_depth(around: DiffusionSample, depth: f32) -> DiffusionSample {
+    var found = around;
+    let slope = diffusion_slope(depth - found.depth, found.variance, found.depth - found.shallowest, found.deepest - found.depth);
+    found.fluence = max(found.fluence + slope * found.covariance, vec3f(0.0f));
+    found.depth += slope * found.variance;
+    return found;
 }
 
 // The fluence at a depth below the surface: between the nodes and Milne's length above the surface it falls
@@ -275,6 +303,7 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
             }
             filled = found.filled;
             inside.densities[end] = found.density;
+            found = diffusion_at_depth(found, below);
             let far = diffusion_below(found, below, outside);
             if (end == 0u) {
                 inside.depth = found.depth;
@@ -298,7 +327,8 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
     inside.straight = vec3f(0.0f);
     if (EFFECT_ENVIRONMENT) {
         if (inside.densities[DIFFUSION_PIECES] == 0.0f) {
-            inside.straight = exp(-gone) * around.behind;
+            // The angles' factor, since the local part is that of a half space, through which nothing comes.
+            inside.straight = angles * exp(-gone) * around.behind;
         }
     }
     return inside;

@@ -58,14 +58,18 @@ struct DiffusionAround {
     depth: f32,
 }
 
-// The nodes around a point, given in voxel spacings from the grid's corner.
-fn diffusion_around(place: vec3f, cells: u32) -> DiffusionAround {
+// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface.
+fn diffusion_around(place: vec3f, below: f32, cells: u32) -> DiffusionAround {
     let last = f32(cells - 1u);
     let low = floor(place - 0.5f);
     let fraction = place - 0.5f - low;
     var around: DiffusionAround;
+    var depths: array<f32, 8>;
     var whole = 0.0f;
     var depth = 0.0f;
+    var square = 0.0f;
+    var shallowest = DIFFUSION_NODE_DEPTH;
+    var deepest = 0.0f;
     for (var corner = 0u; corner < 8u; corner++) {
         let step = vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
         let voxel = vec3u(clamp(low + vec3f(step), vec3f(0.0f), vec3f(last)));
@@ -74,14 +78,24 @@ fn diffusion_around(place: vec3f, cells: u32) -> DiffusionAround {
         let weight = diffusion_weight(fraction, corner, diffusion_volume(word));
         around.voxels[corner] = index;
         around.weights[corner] = weight;
+        let of_node = diffusion_depth(word);
+        depths[corner] = of_node;
         whole += weight;
-        depth += weight * diffusion_depth(word);
+        depth += weight * of_node;
+        square += weight * of_node * of_node;
+        if (weight > 0.0f) {
+            shallowest = min(shallowest, of_node);
+            deepest = max(deepest, of_node);
+        }
     }
     let scale = select(0.0f, 1.0f / max(whole, 1e-12f), whole > 0.0f);
+    depth *= scale;
+    let variance = max(square * scale - depth * depth, 0.0f);
+    let slope = diffusion_slope(below - depth, variance, depth - shallowest, deepest - depth);
     for (var corner = 0u; corner < 8u; corner++) {
-        around.weights[corner] *= scale;
+        around.weights[corner] *= scale * max(1.0f + slope * (depths[corner] - depth), 0.0f);
     }
-    around.depth = depth * scale;
+    around.depth = depth + slope * variance;
     return around;
 }
 
@@ -190,8 +204,8 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
             break;
         }
         let thickness = source.extinction * (local * length);
-        let around = diffusion_around(place, cells);
         let below = middle * cosine;
+        let around = diffusion_around(place, below, cells);
         var given = vec3f(0.0f);
         for (var channel = 0u; channel < 3u; channel++) {
             given[channel] = energy[channel] * diffusion_scattered(gone[channel], thickness[channel])

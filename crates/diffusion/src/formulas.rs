@@ -539,6 +539,33 @@ fn nodes() -> Vec<Formula> {
             within("weight", weight, 0.0, 1.000_102 * f64::from(volume) + FLUSHED)
         })
         .build(),
+        formula(M, "diffusion_slope", mirror::slope, oracle::slope, |draws| {
+            let missing = match draws.below(3) {
+                0 => draws.signed(-59, 58),
+                _ => draws.between(-2.0, 2.0),
+            };
+            let variance = match draws.below(3) {
+                0 => draws.nudged(mirror::DIFFUSION_LEAST_VARIANCE, 3),
+                _ => length(draws),
+            };
+            let distance = |draws: &mut Draws<'_>| match draws.below(3) {
+                0 => draws.nudged(mirror::DIFFUSION_LEAST_STEP, 3),
+                _ => length(draws),
+            };
+            (missing, variance, distance(draws), distance(draws))
+        })
+        .edge("nodes of one depth", |(missing, variance, ..)| missing != 0.0 && variance == 0.0)
+        .edge("between the nodes", |(missing, variance, above, below)| {
+            variance > 0.01 && missing * above < variance && -missing * below < variance && missing != 0.0
+        })
+        .edge("above all nodes", |(missing, variance, _, below)| below > 0.1 && -missing * below > 2.0 * variance)
+        .edge("below all nodes", |(missing, variance, above, _)| above > 0.1 && missing * above > 2.0 * variance)
+        .invariant("no weight is negative", |(_, _, above, below), slope: f32| {
+            let [above, below] = [above, below].map(|distance| f64::from(distance.max(mirror::DIFFUSION_LEAST_STEP)));
+            let least = (1.0 - f64::from(slope) * above).min(1.0 + f64::from(slope) * below);
+            if least >= -1e-6 { Ok(()) } else { Err(format!("a weight of {least}")) }
+        })
+        .build(),
         formula(M, "diffusion_relax", mirror::relax, oracle::relax, |draws| {
             let amount = |draws: &mut Draws<'_>| match draws.below(4) {
                 0 => 0.0,

@@ -30,6 +30,10 @@ pub const DIFFUSION_LEAST_DEPTH: f32 = 0.05;
 pub const DIFFUSION_LEAST_DISTANCE: f32 = 0.25;
 /// Added to all weights of corners.
 pub const DIFFUSION_LEAST_WEIGHT: f32 = 1e-4;
+/// The least variance of the nodes' depths, in squared spacings.
+pub const DIFFUSION_LEAST_VARIANCE: f32 = 1e-4;
+/// The least distance of a node's depth from the mean, in spacings.
+pub const DIFFUSION_LEAST_STEP: f32 = 0.01;
 /// The largest relative index.
 pub const DIFFUSION_DENSEST: f32 = 2.5;
 /// Cosines below this count as it.
@@ -294,6 +298,12 @@ pub fn weight(fraction: Vec3, corner: u32, volume: f32) -> f32 {
     let sides = Vec3::new((corner & 1) as f32, ((corner >> 1) & 1) as f32, ((corner >> 2) & 1) as f32);
     let along = sides * inside + (Vec3::ONE - sides) * (Vec3::ONE - inside);
     (along.x * along.y * along.z + DIFFUSION_LEAST_WEIGHT) * volume
+}
+
+/// Returns how the nodes' weights change with their depth, so that their mean depth is the point's.
+pub fn slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
+    let wanted = missing / variance.max(DIFFUSION_LEAST_VARIANCE);
+    wanted.clamp(-1.0 / below.max(DIFFUSION_LEAST_STEP), 1.0 / above.max(DIFFUSION_LEAST_STEP))
 }
 
 /// Returns a node's value that solves its equation for given neighbours.

@@ -13,6 +13,8 @@ const THINNEST: f32 = 1e-3;
 const LEAST_DEPTH: f32 = 0.05;
 const LEAST_DISTANCE: f32 = 0.25;
 const LEAST_WEIGHT: f32 = 1e-4;
+const LEAST_VARIANCE: f32 = 1e-4;
+const LEAST_STEP: f32 = 0.01;
 const GRAZING: f32 = 1e-9;
 const LENGTHS: (f64, f64) = (0.5, 20.0);
 
@@ -327,6 +329,19 @@ pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
     let along = |(axis, at): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - at } else { at };
     let trilinear: f64 = inside.into_iter().enumerate().map(along).product();
     volume * trilinear + volume * f64::from(LEAST_WEIGHT)
+}
+
+/// Compares the quotient's numerator with both limits, multiplied by the variance.
+pub fn slope(missing: f64, variance: f64, above: f64, below: f64) -> f64 {
+    let variance = variance.max(f64::from(LEAST_VARIANCE));
+    let [above, below] = [above, below].map(|distance| distance.max(f64::from(LEAST_STEP)));
+    if missing * above > variance {
+        above.recip()
+    } else if -missing * below > variance {
+        -below.recip()
+    } else {
+        missing / variance
+    }
 }
 
 /// Adds the shares of load and inflow.

@@ -100,7 +100,8 @@ pub(super) fn pass(
         })?;
         let mut shared = lighting.shared(builder, pipeline)?;
         shared.extend([(4, lit.views.into()), (5, lit.maps)]);
-        let add = Add { pipeline, constants: &constants, cells, lit: &lit, largest, harmonics, settings: part.settings };
+        let add =
+            Add { pipeline, constants: &constants, cells, lit: &lit, largest, harmonics, settings: part.settings };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
             let (body, of_body) =

@@ -55,6 +55,12 @@ pub(super) fn promises() -> Vec<Promise> {
             (Vec3::new(any_finite(draws), any_finite(draws), any_finite(draws)), any_number(draws), large(draws))
         }),
         holds(
+            "diffusion_slope",
+            "in [-100.01, 100.01] for any finite numbers",
+            |draws| (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws)),
+            |_, slope: f32| that(slope.abs() <= 100.01, || format!("slope {slope}")),
+        ),
+        holds(
             "diffusion_relax",
             "0 if conductances and reaction are not positive",
             |draws| (large(draws), large(draws), -large(draws).abs(), -large(draws).abs()),
