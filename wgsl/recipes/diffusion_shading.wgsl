@@ -289,6 +289,10 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
                 let share = clamp((filled - half_full) / max(filled - beyond, 1e-6f), 0.0f, 1.0f);
                 way = mix(inner, outer, share);
                 found = diffusion_sample(start - way * toward_eye);
+                if (found.filled <= 0.0f) {
+                    // Where points are three spacings apart the guess may lie outside of all nodes.
+                    found = diffusion_sample(start - inner * toward_eye);
+                }
                 found.density = 0.0f;
             }
             var outside = around.near;

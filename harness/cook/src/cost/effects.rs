@@ -226,6 +226,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::Diffusion,
                 Effect::ExtinctionPerVoxel,
                 Effect::Environment,
+                Effect::Dielectric,
                 Effect::Microfacet,
                 Effect::Spot,
             ],

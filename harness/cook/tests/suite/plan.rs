@@ -339,6 +339,7 @@ fn cases() -> Vec<Case> {
             [vec!["stone in the light", "shadows of clear stones"], vec!["colored_shadow"], vec!["colored_shadow"]],
         ),
         case(Effect::Environment, one("wax"), of_rung("accurate"), [vec!["harmonics"], vec![], vec![]]),
+        case(Effect::Dielectric, one("wax_bunny"), of_rung("diffusion-16"), none()),
         case(
             Effect::EnvironmentMap,
             one("brilliant"),
@@ -441,6 +442,9 @@ fn what_is_off_says_why() {
         off(&unlit, &of_rung("godunov-16"), Effect::OpticalPath),
         "no light but the environment, which goes no way through bodies"
     );
+    let dark = Settings { without: Effects::of(&[Effect::Environment]), ..of_rung("diffusion-16") };
+    assert_eq!(off(&unlit, &dark, Effect::Diffusion), "no light");
+    assert_eq!(off(&matched, &of_rung("diffusion-16"), Effect::Dielectric), "ior 1: nothing reflects");
     assert_eq!(off(&one("bunny"), &settings, Effect::ExtinctionPerVoxel), "density the same everywhere");
     let mut grey = one("bunny");
     for medium in grey.objects.iter_mut().filter_map(|object| object.material.medium.as_mut()) {
