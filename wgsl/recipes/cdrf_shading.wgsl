@@ -259,10 +259,21 @@ fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
     return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
 }
 
-// Irradiance, each light's part spread by its reflectance and seen by the law of the matter. The
-// light that leaves here has entered at many cosines; the reflectance is their mean, and the law
-// takes it for the cosine of the light. So it is the half space's law where nothing is spread, and nowhere grazing
-// where something is.
+// The cosine at which the light that leaves here has entered, for the law of the matter: its mean over
+// where the light entered, weighted with the light. Of a Gaussian around a small angle x that is x + sigma^2 / x on
+// the lit side and 1.25 sigma at the terminator; the root lies between, and is not grazing where
+// something is spread. Where nothing is, it is the reflectance, the clamped cosine.
+fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
+    if (!EFFECT_CDRF) {  //+cdrf
+        return reflectance;
+    }  //+cdrf
+    //+cdrf {
+    let sigma = cdrf_sigmas(curvature);
+    return min(sqrt(reflectance * reflectance + sigma * sigma), vec3f(1.0f));
+    //+cdrf }
+}
+
+// Irradiance, each light's part spread by its reflectance and seen by the law of the matter.
 fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
@@ -276,7 +287,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_
         //+half_space {
         var law = vec3f(1.0f);
         if (EFFECT_HALF_SPACE) {
-            law = scattering_law_of_light(dot(normal, toward_eye), reflectance, material.law);
+            law = scattering_law_of_light(dot(normal, toward_eye), cdrf_entered(reflectance, curvature), material.law);
         }
         //+half_space }
         if (EFFECT_SHADOW) {
