@@ -11,7 +11,8 @@
 // Lengths on the grid are in spacings. The equation of node i, times 3 sigma, is
 //   sum of G (phi_j - phi_i) - (S / (rho t + z) + (kappa h)^2 rho V) phi_i + 3 sigma load = 0
 // with G by diffusion_face, S / (rho t + z) by diffusion_surface, and kappa = sqrt(3) gamma sigma.
-// All functions take gamma = sqrt(1 - albedo), as half_space does, and H as half_space_h returns it.
+// All functions take gamma = sqrt(1 - albedo), as half_space does, and H and the law as its functions return
+// them.
 
 // Milne's extrapolation length in mean free paths: that far outside of an index-matched surface the
 // fluence would be 0 if it fell on straight.
@@ -24,12 +25,19 @@ const DIFFUSION_LEAST_DEPTH: f32 = 0.05f;
 const DIFFUSION_LEAST_DISTANCE: f32 = 0.25f;
 // Added to all weights of corners, so that the weights of filled nodes never add up to 0.
 const DIFFUSION_LEAST_WEIGHT: f32 = 1e-4f;
+// The least variance of the nodes' depths, and the least distance of one from their mean, in spacings: what is
+// less is rounding.
+const DIFFUSION_LEAST_VARIANCE: f32 = 1e-4f;
+const DIFFUSION_LEAST_STEP: f32 = 0.01f;
 // The largest relative index.
 const DIFFUSION_DENSEST: f32 = 2.5f;
 // Cosines below this count as it.
 const DIFFUSION_GRAZING: f32 = 1e-9f;
 // Light of a larger optical depth counts as light of this one, of which a float is hardly left.
 const DIFFUSION_OPAQUE: f32 = 87.0f;
+// The least and the largest extrapolation length in mean free paths.
+const DIFFUSION_NEAREST: f32 = 0.5f;
+const DIFFUSION_OUTERMOST: f32 = 20.0f;
 // The largest optical depth of a node.
 const DIFFUSION_DEEPEST: f32 = 1e6f;
 // The largest optical depth along a line.
@@ -95,18 +103,20 @@ fn diffusion_profile(depth: f32, node_depth: f32, milne: f32) -> f32 {
     return (below + milne) / max(node_depth + milne, 1e-30f);
 }
 
-// What the exact law of a half space adds to diffusion's at an angle: H over its value along the normal,
-// relative to diffusion's straight law milne + cosine. It is a factor on light that enters, and on light
-// that leaves.
-// Returns: H(m) / H(1) (1 + milne) / (m + milne), from 1 along the normal to 0.82 or more for matter that
-//   absorbs nothing, and to 2.4 for matter that scatters nothing.
+// What the exact law of a half space adds to diffusion's at an angle, for light that comes from afar: H / (1
+// - kappa m) by Milne's problem, over diffusion's (milne + m) / (1 - (kappa m)^2), relative to the value
+// along the normal. It is a factor on light that enters, and on light that leaves.
+// Returns: H(m) (1 + kappa m) / (milne + m) over the same at m = 1: from 1 along the normal to 0.82 or more
+//   grazing, and at most 1.05 between them.
 // Units: `h` is half_space_h at the cosine, `h_normal` at 1; `milne` in mean free paths.
-// Domain: any cosine, clamped to [0, 1]; h and h_normal in [1, 3]; milne in [0.5, 20].
+// Domain: any cosine, clamped to [0, 1]; h and h_normal in [1, 3]; any gamma, clamped to [0, 1]; milne in
+//   [0.5, 20].
 // Outside: finite for magnitudes up to 1e9, if h_normal is at least 1 and milne at least 0.01.
-// Accuracy: lavapipe 5 ulp; portable 11 ulp
-fn diffusion_angle(cosine: f32, h: f32, h_normal: f32, milne: f32) -> f32 {
+// Accuracy: lavapipe 8 ulp; portable 18 ulp
+fn diffusion_angle(cosine: f32, h: f32, h_normal: f32, gamma: f32, milne: f32) -> f32 {
     let m = clamp(cosine, 0.0f, 1.0f);
-    return h * (1.0f + milne) / (h_normal * (m + milne));
+    let kappa = 1.7320508f * clamp(gamma, 0.0f, 1.0f);
+    return h * (1.0f + milne) * (1.0f + kappa * m) / (h_normal * (m + milne) * (1.0f + kappa));
 }
 
 // Means of transmittance over a line, weighted towards its start and towards its end. For thin lines both
@@ -195,77 +205,107 @@ fn diffusion_unscattered(thickness: f32, near: f32, far: f32) -> f32 {
 // Fluence in a half space at a depth, lit by parallel light, by the exact solution of the equation of
 // diffusion with its exact source: a e^(-kappa t) + b e^(-t/m0). Both factors have a pole where
 // kappa m0 = 1, that is removed here: all terms are positive.
-// Returns: fluence of light that has collided, per perpendicular irradiance 1, in [0, 5.14];
-//   3 m0 (z + m0) deep inside matter that absorbs nothing.
-// Units: none; `depth` is an optical depth along the normal.
+// Returns: fluence of light that has collided, per perpendicular irradiance 1, in [0, 63];
+//   3 m0 (milne + m0) deep inside matter that absorbs nothing.
+// Units: none; `depth` is an optical depth along the normal, `milne` in mean free paths.
 // Domain: any depth, clamped to [0, 1e6]; any cosine_light, clamped to [1e-9, 1]; any gamma, clamped to
-//   [0, 1].
+//   [0, 1]; any milne, clamped to [0.5, 20].
 // Outside: nothing.
-// Accuracy: lavapipe 26 ulp + 1e-30 abs + 4 backward; portable 34 ulp + 1e-30 abs + 6 backward
-fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32) -> f32 {
+// Accuracy: lavapipe 26 ulp + 1e-30 abs + 4 backward; portable 36 ulp + 1e-30 abs + 6 backward
+fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let t = clamp(depth, 0.0f, DIFFUSION_DEEPEST);
     let c = clamp(cosine_light, DIFFUSION_GRAZING, 1.0f);
     let g = clamp(gamma, 0.0f, 1.0f);
+    let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508f * g;
     let damped = kappa * t;
     let strength = 3.0f * (1.0f - g) * (1.0f + g) * c / (1.0f + kappa * c);
-    let surface = DIFFUSION_MILNE / (1.0f + kappa * DIFFUSION_MILNE) * exp(-min(damped, DIFFUSION_OPAQUE));
+    let surface = z / (1.0f + kappa * z) * exp(-min(damped, DIFFUSION_OPAQUE));
     return strength * (surface + t * diffusion_mean(damped, t / c));
 }
 
 // What the eye sees of diffusion_fluence from a depth on: the integral of fluence(t) e^(-t/m) / m over t
 // from there to infinity.
-// Returns: that integral, in [0, 3.64].
-// Units: none; `depth` is an optical depth along the normal.
-// Domain: any depth, clamped to [0, 1e6]; any cosines, clamped to [1e-9, 1]; any gamma, clamped to [0, 1].
+// Returns: that integral, in [0, 61.5].
+// Units: none; `depth` is an optical depth along the normal, `milne` in mean free paths.
+// Domain: any depth, clamped to [0, 1e6]; any cosines, clamped to [1e-9, 1]; any gamma, clamped to [0, 1];
+//   any milne, clamped to [0.5, 20].
 // Outside: nothing.
-// Accuracy: lavapipe 26 ulp + 1e-30 abs + 3 backward; portable 60 ulp + 1e-30 abs + 8 backward
-fn diffusion_tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32) -> f32 {
+// Accuracy: lavapipe 33 ulp + 1e-30 abs + 3 backward; portable 62 ulp + 1e-30 abs + 8 backward
+fn diffusion_tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let t = clamp(depth, 0.0f, DIFFUSION_DEEPEST);
     let m = clamp(cosine_eye, DIFFUSION_GRAZING, 1.0f);
     let c = clamp(cosine_light, DIFFUSION_GRAZING, 1.0f);
     let g = clamp(gamma, 0.0f, 1.0f);
+    let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508f * g;
     let damped = kappa * t;
     let strength = 3.0f * (1.0f - g) * (1.0f + g) * c / (1.0f + kappa * c);
     let left = exp(-min(damped, DIFFUSION_OPAQUE)) / (1.0f + kappa * m);
     let share = c / (m + c);
-    let surface = (DIFFUSION_MILNE / (1.0f + kappa * DIFFUSION_MILNE) + share * m) * left;
+    let surface = (z / (1.0f + kappa * z) + share * m) * left;
     let seen = exp(-min(t / m, DIFFUSION_OPAQUE));
     return strength * seen * (surface + share * t * diffusion_mean(damped, t / c));
 }
 
-// What the grid does not show at a lit surface: the light that the exact half space sends to the eye
-// (Chandrasekhar), less its single scattering, less what the grid shows of such a half space. The grid has
-// nodes at the optical depths `depth` and `depth + gap`, with exact values. It shows Robin's profile up to
-// the first, a straight line to the second, and the solution from there on. What it shows is a sum of
-// positive terms: only the final difference cancels.
-// Returns: radiance per perpendicular irradiance 1, in [-0.3, 0.64]; 0 for gamma = 1. Add it to what the
-//   grid shows and to single scattering, times the light that reaches the surface.
-// Units: 1/sr; optical depths along the normal; `h_eye` and `h_light` are half_space_h at the cosines.
-// Domain: any cosines, clamped to [1e-9, 1]; any h, clamped to [1, 3]; any gamma, clamped to [0, 1]; any
-//   depth and gap, clamped to [0, 1e6].
+// What the grid does not show at a lit surface: the light that the exact half space sends to the eye, less
+// its single scattering, less what the grid shows of such a half space. The grid has nodes at the optical
+// depths `depth` and `depth + gap`, with exact values. It shows Robin's profile up to the first, a straight
+// line to the second, and the solution from there on. What it shows is a sum of positive terms: only the
+// final differences cancel.
+// Returns: law - albedo / (4 pi) (m0 / (m + m0) + angle shown), in [-7, 4]. Add it to what the grid shows
+//   times the angles' factors, and to single scattering, times the light that reaches the surface.
+// Units: 1/sr; `law` is the exact radiance per perpendicular irradiance 1, m0 times half_space_brdf;
+//   optical depths along the normal; `milne` in mean free paths; `angle` is the product of diffusion_angle
+//   for eye and light.
+// Domain: any cosines, clamped to [1e-9, 1]; any law, clamped to [0, 4]; any gamma, clamped to [0, 1]; any
+//   milne, clamped to [0.5, 20]; any depth and gap, clamped to [0, 1e6]; any angle, clamped to [0, 1.25].
 // Outside: nothing.
-// Accuracy: lavapipe 7e-7 abs; portable 1.4e-6 abs
-fn diffusion_local(cosine_eye: f32, cosine_light: f32, h_eye: f32, h_light: f32, gamma: f32, depth: f32, gap: f32) -> f32 {
+// Accuracy: lavapipe 1.1e-5 abs; portable 2.1e-5 abs
+fn diffusion_local(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
     let m = clamp(cosine_eye, DIFFUSION_GRAZING, 1.0f);
     let c = clamp(cosine_light, DIFFUSION_GRAZING, 1.0f);
-    let eye = clamp(h_eye, 1.0f, 3.0f);
-    let light = clamp(h_light, 1.0f, 3.0f);
+    let exact = clamp(law, 0.0f, 4.0f);
     let g = clamp(gamma, 0.0f, 1.0f);
+    let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let node = clamp(depth, 0.0f, DIFFUSION_DEEPEST);
     let between = clamp(gap, 0.0f, DIFFUSION_DEEPEST);
     let end = node + between;
-    let first = diffusion_fluence(node, c, g);
-    let second = diffusion_fluence(end, c, g);
-    let start = DIFFUSION_MILNE / (node + DIFFUSION_MILNE);
-    let above = first * diffusion_segment(start, 1.0f, node / m);
+    let first = diffusion_fluence(node, c, g, z);
+    let second = diffusion_fluence(end, c, g, z);
+    let above = first * diffusion_segment(z / (node + z), 1.0f, node / m);
     let seen = exp(-min(node / m, DIFFUSION_OPAQUE));
     let below = seen * diffusion_segment(first, second, between / m);
-    let shown = above + below + diffusion_tail(end, m, c, g);
-    // H(eye) H(light) - 1.
-    let multiple = c / (m + c) * ((eye - 1.0f) + eye * (light - 1.0f));
-    return 0.07957747f * (1.0f - g) * (1.0f + g) * (multiple - shown);
+    let shown = above + below + diffusion_tail(end, m, c, g, z);
+    return exact - 0.07957747f * (1.0f - g) * (1.0f + g) * (c / (m + c) + clamp(angle, 0.0f, 1.25f) * shown);
+}
+
+// The same under light that comes alike from all around: what such a half space sends to the eye, less what
+// the grid shows of it. Its fluence, relative to that outside, is e^(-kappa t) / (1 + kappa milne).
+// Returns: law - albedo angle shown, in [-1.25, 1]; 1 - angle for matter that absorbs nothing. Add it, times
+//   the radiance that arrives, to what the grid shows times the eye's factor.
+// Units: none; `law` is the exact radiance under a radiance of 1, half_space_directional; optical depths along
+//   the normal; `milne` in mean free paths; `angle` is diffusion_angle for the eye.
+// Domain: any cosine, clamped to [1e-9, 1]; any law, clamped to [0, 1]; any gamma, clamped to [0, 1]; any
+//   milne, clamped to [0.5, 20]; any depth and gap, clamped to [0, 1e6]; any angle, clamped to [0, 1.25].
+// Outside: nothing.
+// Accuracy: lavapipe 1.7e-6 abs; portable 2.8e-6 abs
+fn diffusion_local_around(cosine_eye: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
+    let m = clamp(cosine_eye, DIFFUSION_GRAZING, 1.0f);
+    let exact = clamp(law, 0.0f, 1.0f);
+    let g = clamp(gamma, 0.0f, 1.0f);
+    let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
+    let node = clamp(depth, 0.0f, DIFFUSION_DEEPEST);
+    let between = clamp(gap, 0.0f, DIFFUSION_DEEPEST);
+    let end = node + between;
+    let kappa = 1.7320508f * g;
+    let first = exp(-min(kappa * node, DIFFUSION_OPAQUE)) / (1.0f + kappa * z);
+    let second = exp(-min(kappa * end, DIFFUSION_OPAQUE)) / (1.0f + kappa * z);
+    // At the surface the grid shows the mean of the node's fluence and of that outside.
+    let above = diffusion_segment((first * z + node) / (node + z), first, node / m);
+    let below = exp(-min(node / m, DIFFUSION_OPAQUE)) * diffusion_segment(first, second, between / m);
+    let shown = above + below + exp(-min(end / m, DIFFUSION_OPAQUE)) * second / (1.0f + kappa * m);
+    return exact - (1.0f - g) * (1.0f + g) * clamp(angle, 0.0f, 1.25f) * shown;
 }
 
 // Weight of one of the eight nodes about a point, for the mean of what they hold: divide by the sum of the
@@ -283,6 +323,21 @@ fn diffusion_weight(fraction: vec3f, corner: u32, volume: f32) -> f32 {
     // Exact, since the sides are 0 or 1.
     let along = sides * inside + (vec3f(1.0f) - sides) * (vec3f(1.0f) - inside);
     return (along.x * along.y * along.z + DIFFUSION_LEAST_WEIGHT) * volume;
+}
+
+// How the nodes' weights change with their depth, so that their mean depth is that of the point looked up:
+// the weight of a node at a distance `d` below the mean is multiplied by 1 + slope d. Between two nodes below
+// one another this makes linear interpolation of the weights by volume. No weight falls below 0.
+// Returns: missing / variance, from -1 / below to 1 / above.
+// Units: spacings: `missing` is the point's depth less the nodes' mean, `variance` that of their depths,
+//   `above` and `below` are the distances from the mean to the shallowest and to the deepest.
+// Domain: missing with a magnitude up to 1e18; variance up to 1e18, at least 1e-4 counts; above and below up
+//   to 1e18, at least 0.01 counts.
+// Outside: in [-100.01, 100.01] for any finite numbers.
+// Accuracy: lavapipe 3 ulp; portable 3 ulp
+fn diffusion_slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
+    let wanted = missing / max(variance, DIFFUSION_LEAST_VARIANCE);
+    return clamp(wanted, -1.0f / max(below, DIFFUSION_LEAST_STEP), 1.0f / max(above, DIFFUSION_LEAST_STEP));
 }
 
 // A node's value that solves its equation for given neighbours: a step of relaxation.

@@ -78,49 +78,44 @@ fn diffusion_unscattered_naive(thickness: f32, near: f32, far: f32) -> f32 {
 // The half space's solution as it is printed.
 // Returns: a e^(-kappa t) + b e^(-t/m0).
 // Units: as diffusion_fluence.
-// Domain: depth in [0, 3], cosine_light in [0.2, 1], gamma in [0, 0.4].
+// Domain: depth in [0, 3], cosine_light in [0.2, 1], gamma in [0, 0.4], milne in [0.7, 4].
 // Outside: infinite factors where kappa m0 = 1, few digits about it; 0 / 0 for a cosine of 0.
 // Accuracy: naive
-fn diffusion_fluence_naive(depth: f32, cosine_light: f32, gamma: f32) -> f32 {
+fn diffusion_fluence_naive(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let kappa = 1.7320508f * gamma;
     let m0 = cosine_light;
     let b = -3.0f * (1.0f - gamma * gamma) * m0 * m0 / (1.0f - kappa * kappa * m0 * m0);
-    let a = -b * (1.0f + DIFFUSION_MILNE / m0) / (1.0f + kappa * DIFFUSION_MILNE);
+    let a = -b * (1.0f + milne / m0) / (1.0f + kappa * milne);
     return a * exp(-kappa * depth) + b * exp(-depth / m0);
 }
 
-// The local part as three closed forms: what lies above the straight lines of the first and of the second
-// interval, and what the exact law adds to diffusion.
-// Returns: bubble + bubble + Chandrasekhar's law less diffusion's.
+// The local part with closed forms of what the grid shows above its first node, between its nodes, and below
+// them.
+// Returns: law - albedo / (4 pi) (m0 / (m + m0) + angle (above + below + rest)).
 // Units: as diffusion_local.
-// Domain: cosines in [0.2, 1], h in [2.8, 3], gamma in [0.1, 0.4], depth in [0.5, 4], gap in [0.3, 2].
+// Domain: cosines in [0.2, 1], law in [0, 1], gamma in [0.1, 0.4], milne in [0.7, 4], depth in [0.5, 4], gap in
+//   [0.3, 2], angle in [0.8, 1.1].
 // Outside: infinite factors where kappa m0 = 1; 0 / 0 for a gap or a cosine of 0.
 // Accuracy: naive
-fn diffusion_local_naive(cosine_eye: f32, cosine_light: f32, h_eye: f32, h_light: f32, gamma: f32, depth: f32, gap: f32) -> f32 {
+fn diffusion_local_naive(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
     let m = cosine_eye;
     let m0 = cosine_light;
-    let z = DIFFUSION_MILNE;
+    let z = milne;
     let albedo = 1.0f - gamma * gamma;
     let kappa = 1.7320508f * gamma;
     let b = -3.0f * albedo * m0 * m0 / (1.0f - kappa * kappa * m0 * m0);
     let a = -b * (1.0f + z / m0) / (1.0f + kappa * z);
     let end = depth + gap;
     let q = exp(-depth / m);
-    let q_gap = exp(-gap / m);
-    let deep = exp(-kappa * depth);
-    let lit = exp(-depth / m0);
+    let q_end = exp(-end / m);
     let deep_end = exp(-kappa * end);
     let lit_end = exp(-end / m0);
-    let first = a * deep + b * lit;
+    let first = a * exp(-kappa * depth) + b * exp(-depth / m0);
     let second = a * deep_end + b * lit_end;
-    let along_deep = a / (1.0f + kappa * m);
-    let along_lit = b / (1.0f + m / m0);
-    let straight = first / (depth + z) * (z + m - (depth + z + m) * q);
-    let bubble = along_deep * (1.0f - deep * q) + along_lit * (1.0f - lit * q) - straight;
-    let line = first * (1.0f - q_gap) + (second - first) / gap * (m - (gap + m) * q_gap);
-    let other = along_deep * (deep - deep_end * q_gap) + along_lit * (lit - lit_end * q_gap) - line;
-    let law = m0 / (m + m0) * (h_eye * h_light - 1.0f) - along_deep - along_lit;
-    return 0.07957747f * albedo * (bubble + q * other + law);
+    let above = first / (depth + z) * (z + m - (depth + z + m) * q);
+    let below = first * (q - q_end) + (second - first) / gap * (m * q - (gap + m) * q_end);
+    let rest = (a * deep_end / (1.0f + kappa * m) + b * lit_end / (1.0f + m / m0)) * q_end;
+    return law - 0.07957747f * albedo * (m0 / (m + m0) + angle * (above + below + rest));
 }
 
 // The step of relaxation without a guard.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; cut cells as in Johansen and Colella, "A Cartesian Grid Embedded Boundary Method for
 //   Poisson's Equation on Irregular Domains", J. Comput. Phys. 147 (1998), with two-point fluxes.
-// requires: diffusion, voxelization
-// parts: mesh, diffusion_nodes
+// requires: cdrf, diffusion, environment, voxelization
+// parts: mesh, harmonics, diffusion_nodes
 //
 // After the recipe voxelization has filled a grid of twice the cells along each edge:
 // 1. `diffusion_cells_fill`, one workgroup of 64 per row of words: (words, cells, cells) / 64.
@@ -14,6 +14,9 @@
 // The density varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+
+// Light from all around that enters through the surface. Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
 
 // The number of pieces above which a triangle is shared among invocations.
 override DIFFUSION_LARGE: u32 = 256u;
@@ -29,6 +32,10 @@ struct DiffusionCells {
     milne: vec3f,
     // 3 times absorption times extinction, times the squared spacing, in each channel.
     absorption: vec3f,
+    // The irradiance that counts as 1.
+    largest: vec3f,
+    // Fluence outside for an irradiance of 1, in a medium of the body's index: 4 index^2.
+    outside: f32,
 }
 
 struct DiffusionList {
@@ -39,8 +46,7 @@ struct DiffusionList {
 @group(0) @binding(0) var<uniform> cells: DiffusionCells;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
-// The grid of half the spacing, a bit for each voxel, in rows along x.
-@group(0) @binding(3) var<storage, read> fine: array<u32>;
+// Binding 3 belongs to the part harmonics.
 // Which voxels hold any matter, a bit for each, in rows along x.
 @group(0) @binding(4) var<storage, read_write> matter: array<u32>;
 // The filled eighths of each voxel.
@@ -56,6 +62,11 @@ struct DiffusionList {
 // What a voxel loses through the surface and by absorption in each channel; and its filled volume.
 @group(0) @binding(11) var<storage, read_write> reactions: array<vec4f>;
 @group(0) @binding(12) var<storage, read> density: array<f32>;
+// The grid of half the spacing, a bit for each voxel, in rows along x.
+@group(0) @binding(13) var<storage, read> fine: array<u32>;
+// What enters each voxel of the light from all around, as the right side of the equations: three numbers for
+// each, as bits.
+@group(0) @binding(14) var<storage, read_write> entering: array<atomic<u32>>;
 
 fn diffusion_index(voxel: vec3u) -> u32 {
     return voxel.x + cells.grid.cells * (voxel.y + cells.grid.cells * voxel.z);
@@ -95,6 +106,11 @@ fn diffusion_cells_fill(@builtin(global_invocation_id) invocation: vec3u) {
             filled[index] = parts;
             atomicStore(&areas[index], 0u);
             atomicStore(&depths[index], bitcast<u32>(DIFFUSION_NODE_DEPTH));
+            if (EFFECT_ENVIRONMENT) {
+                for (var channel = 0u; channel < 3u; channel++) {
+                    atomicStore(&entering[3u * index + channel], 0u);
+                }
+            }
             bits |= select(0u, 1u << (16u * half + place), parts != 0u);
         }
     }
@@ -150,10 +166,24 @@ fn diffusion_from_triangle(point: vec3f, triangle: DiffusionTriangle) -> f32 {
     return min(diffusion_from_edge(point, a, b), min(diffusion_from_edge(point, b, c), diffusion_from_edge(point, c, a)));
 }
 
+// Irradiance from all around on a surface that nothing hides, of which `largest` counts as 1.
+fn diffusion_arriving(normal: vec3f) -> vec3f {
+    let weights = cdrf_harmonic_weights(0.0f);
+    let irradiance = harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+    return min(irradiance / cells.largest, vec3f(1.0f));
+}
+
 // Adds every `step`th piece of a triangle, starting with the one numbered `first`.
 fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
     let side = triangle.pieces;
-    let area = u32(triangle.area / f32(side * side) * DIFFUSION_AREA + 0.5f);
+    let share = triangle.area / f32(side * side) * DIFFUSION_AREA;
+    let area = u32(share + 0.5f);
+    //+environment {
+    var arriving = vec3u(0u);
+    if (EFFECT_ENVIRONMENT) {
+        arriving = vec3u(share * diffusion_arriving(triangle.normal) + 0.5f);
+    }
+    //+environment }
     let last = cells.grid.cells - 1u;
     for (var piece = first; piece < side * side; piece += step) {
         // Rows of 1, 3, 5 ... pieces, from the corner a on.
@@ -173,6 +203,11 @@ fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
             holder = vec3u(clamp(position - 0.5f * triangle.normal, vec3f(0.0f), vec3f(f32(last))));
         }
         atomicAdd(&areas[diffusion_index(holder)], area);
+        if (EFFECT_ENVIRONMENT) {
+            for (var channel = 0u; channel < 3u; channel++) {
+                atomicAdd(&entering[3u * diffusion_index(holder) + channel], arriving[channel]);
+            }
+        }
         let corner = vec3i(floor(position - 0.5f));
         for (var neighbour = 0u; neighbour < 8u; neighbour++) {
             // Values below 0 wrap around.
@@ -292,5 +327,13 @@ fn diffusion_cells_finish(@builtin(global_invocation_id) invocation: vec3u) {
         diffusion_surface(area, depth, own, cells.milne.z),
     );
     reactions[index] = vec4f(through + cells.absorption * own * volume, volume);
+    if (EFFECT_ENVIRONMENT) {
+        for (var channel = 0u; channel < 3u; channel++) {
+            // The area times the irradiance. Light enters where it leaves, by the same conductance.
+            let arrived = f32(atomicLoad(&entering[3u * index + channel])) / DIFFUSION_AREA;
+            let load = cells.outside * diffusion_surface(arrived, depth, own, cells.milne[channel]);
+            atomicStore(&entering[3u * index + channel], bitcast<u32>(load));
+        }
+    }
     nodes[index] = diffusion_word(parts, depth);
 }

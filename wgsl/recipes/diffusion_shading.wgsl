@@ -13,9 +13,10 @@ override EFFECT_DIFFUSION: bool = true;
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
-// Diffuse light from all around, in addition to the lights. It does not travel through the body.
-// Called for by an environment.
+// Diffuse light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
+// The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
+override EFFECT_DIELECTRIC: bool = false;
 
 // The way inside is cut where its optical depth is 0, .4, 1.2, 2.5 and 5.
 const DIFFUSION_PIECES: u32 = 4u;
@@ -38,8 +39,14 @@ struct DiffusionBody {
     alpha: f32,
     // The irradiance that counts as 1.
     largest: vec3f,
+    // Milne's length in mean free paths.
+    milne: f32,
     // Chandrasekhar's H function along the normal, in each channel.
     h_normal: vec3f,
+    // half_space_edge of the index.
+    edge: f32,
+    // half_space_gain, in each channel.
+    gain: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> view: DiffusionView;
@@ -75,6 +82,12 @@ struct DiffusionSample {
     fluence: vec3f,
     // Their mean depth in voxel spacings.
     depth: f32,
+    // How fluence and depth vary together, and the variance of the depth.
+    covariance: vec3f,
+    variance: f32,
+    // The least depth and the largest.
+    shallowest: f32,
+    deepest: f32,
     // Their mean density; 0 where there is no matter about the point.
     density: f32,
     // The filled share of the space about the point: about 1/2 at the surface of a thick part.
@@ -86,16 +99,25 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
     let cells = body.grid.cells;
     let low = floor(place - 0.5f);
     let fraction = place - 0.5f - low;
-    var found = DiffusionSample(vec3f(0.0f), 0.0f, 0.0f, 0.0f);
+    var found: DiffusionSample;
+    found.shallowest = DIFFUSION_NODE_DEPTH;
+    var products = vec3f(0.0f);
+    var square = 0.0f;
     for (var corner = 0u; corner < 8u; corner++) {
         let step = vec3f(f32(corner & 1u), f32((corner >> 1u) & 1u), f32(corner >> 2u));
         let voxel = vec3u(clamp(low + step, vec3f(0.0f), vec3f(f32(cells - 1u))));
         let index = voxel.x + cells * (voxel.y + cells * voxel.z);
         let word = packed[index];
         let weight = diffusion_weight(fraction, corner, diffusion_packed_volume(word));
+        let fluence = weight * diffusion_packed_fluence(word);
+        let depth = diffusion_packed_depth(word);
         found.filled += weight;
-        found.fluence += weight * diffusion_packed_fluence(word);
-        found.depth += weight * diffusion_packed_depth(word);
+        found.fluence += fluence;
+        found.depth += weight * depth;
+        products += fluence * depth;
+        square += weight * depth * depth;
+        found.shallowest = select(found.shallowest, min(found.shallowest, depth), weight > 0.0f);
+        found.deepest = select(found.deepest, max(found.deepest, depth), weight > 0.0f);
         if (EFFECT_EXTINCTION_PER_VOXEL) {
             found.density += weight * density[index];
         }
@@ -104,19 +126,105 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
     if (!EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
         found.density = found.filled;
     }  //+extinction_per_voxel
+    found.fluence *= scale;
+    found.depth *= scale;
+    found.covariance = scale * products - found.depth * found.fluence;
+    found.variance = max(scale * square - found.depth * found.depth, 0.0f);
     // A density of 0 stands for no matter.
-    let density = select(0.0f, max(scale * found.density, DIFFUSION_THINNEST), found.filled > 0.0f);
-    return DiffusionSample(scale * found.fluence, scale * found.depth, density, found.filled);
+    found.density = select(0.0f, max(scale * found.density, DIFFUSION_THINNEST), found.filled > 0.0f);
+    return found;
 }
 
-// The fluence at a depth below the surface: between the surface and the nodes it falls linearly, to 0
-// at Milne's length above the surface.
-fn diffusion_below(found: DiffusionSample, depth: f32) -> vec3f {
-    let milne = DIFFUSION_MILNE / (body.extinction * max(found.density, DIFFUSION_THINNEST));
-    return found.fluence * vec3f(
+// The same nodes with weights that put their mean at a depth below the surface, as near as they can.
+fn diffusion_at_depth(around: DiffusionSample, depth: f32) -> DiffusionSample {
+    var found = around;
+    let slope = diffusion_slope(depth - found.depth, found.variance, found.depth - found.shallowest, found.deepest - found.depth);
+    found.fluence = max(found.fluence + slope * found.covariance, vec3f(0.0f));
+    found.depth += slope * found.variance;
+    return found;
+}
+
+// The fluence at a depth below the surface: between the nodes and Milne's length above the surface it falls
+// linearly, to that outside.
+fn diffusion_below(found: DiffusionSample, depth: f32, outside: vec3f) -> vec3f {
+    let milne = body.milne / (body.extinction * max(found.density, DIFFUSION_THINNEST));
+    let share = vec3f(
         diffusion_profile(depth, found.depth, milne.x),
         diffusion_profile(depth, found.depth, milne.y),
         diffusion_profile(depth, found.depth, milne.z),
+    );
+    var fluence = found.fluence * share;
+    if (EFFECT_ENVIRONMENT) {
+        fluence += outside * (1.0f - share);
+    }
+    return fluence;
+}
+
+// The index of refraction that light meets at the surface.
+fn diffusion_index() -> f32 {
+    if (EFFECT_DIELECTRIC) {
+        return body.index;
+    }
+    return 1.0f;
+}
+
+// What light from all around is to the inside.
+struct DiffusionAround {
+    // Radiance inside, of light that comes alike from all around as much as falls on the surface.
+    radiance: vec3f,
+    // The fluence outside, of which `largest` counts as 1, in a medium of the body's index: at the point, and
+    // where the eye's way may leave the body, which the surface faces about there.
+    near: vec3f,
+    far: vec3f,
+    // Radiance that comes towards the eye from behind the body.
+    behind: vec3f,
+}
+
+fn diffusion_around(normal: vec3f, toward_eye: vec3f) -> DiffusionAround {
+    let weights = cdrf_harmonic_weights(0.0f);
+    let squared = diffusion_index() * diffusion_index();
+    let near = harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+    let around = harmonics_around(-toward_eye);
+    let far = harmonics_irradiance(around, weights, weights, weights);
+    // The least of light that counts keeps a body that no light falls on from 0 / 0.
+    let unit = 4.0f * squared / max(body.largest, vec3f(1.1754944e-38f));
+    let behind = max(around.zeroth + around.first + around.second + around.fourth, vec3f(0.0f));
+    return DiffusionAround(0.31830987f * squared * near, unit * near, unit * far, squared * behind);
+}
+
+// Radiance towards the eye under a radiance of 1 from all around, by a half space. With a boundary it is that
+// of diffusion.
+fn diffusion_law_around(cosine: f32, gamma: f32) -> f32 {
+    if (!EFFECT_DIELECTRIC) {  //+dielectric
+        return half_space_directional(cosine, gamma);
+    }  //+dielectric
+    //+dielectric {
+    let kappa = 1.7320508f * gamma;
+    return (1.0f - gamma) * (1.0f + gamma) / ((1.0f + kappa * body.milne) * (1.0f + kappa * cosine));
+    //+dielectric }
+}
+
+// Radiance of a half space per perpendicular irradiance 1, both inside: by the exact law.
+fn diffusion_law(cosine_eye: f32, cosine_light: f32, gamma: f32, gain: f32) -> f32 {
+    if (!EFFECT_DIELECTRIC) {  //+dielectric
+        return cosine_light * half_space_brdf(cosine_eye, cosine_light, gamma);
+    }  //+dielectric
+    //+dielectric {
+    return cosine_light * half_space_inside(cosine_eye, cosine_light, gamma, body.edge, gain);
+    //+dielectric }
+}
+
+// What the exact law of a half space adds to diffusion's at an angle, in each channel. A boundary that throws
+// light back makes it diffuse, and nothing is added.
+fn diffusion_angles(cosine: f32) -> vec3f {
+    if (EFFECT_DIELECTRIC) {
+        return vec3f(1.0f);
+    }
+    let h = diffusion_h(cosine);
+    return vec3f(
+        diffusion_angle(cosine, h.x, body.h_normal.x, body.gamma.x, DIFFUSION_MILNE),
+        diffusion_angle(cosine, h.y, body.h_normal.y, body.gamma.y, DIFFUSION_MILNE),
+        diffusion_angle(cosine, h.z, body.h_normal.z, body.gamma.z, DIFFUSION_MILNE),
     );
 }
 
@@ -128,11 +236,14 @@ struct DiffusionWay {
     densities: array<f32, 5>,
     // Radiance towards the eye for an albedo of 4 pi.
     scattered: vec3f,
+    // Radiance that comes straight through the body.
+    straight: vec3f,
     // Mean depth of the nodes about the first point, in voxel spacings.
     depth: f32,
 }
 
-fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: vec3f) -> DiffusionWay {
+// The eye's way inside from a point of the surface; `toward_eye` and its cosine are those inside.
+fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles: vec3f, around: DiffusionAround) -> DiffusionWay {
     // The same places for all channels.
     var depths = array<f32, 5>(0.0f, 0.4f, 1.2f, 2.5f, 5.0f);
     let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
@@ -180,14 +291,20 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: 
                 found = diffusion_sample(start - way * toward_eye);
                 found.density = 0.0f;
             }
+            var outside = around.near;
             if (end > 0u) {
                 // Towards the far side the fluence falls again, by about how much of the space is filled.
                 let full = found.filled / max(fullest, 1e-6f);
-                below = min(below, max(0.75f * (2.0f * full - 1.0f), 0.0f) / max(1.001f - full, 1e-3f));
+                let above = max(0.75f * (2.0f * full - 1.0f), 0.0f) / max(1.001f - full, 1e-3f);
+                if (EFFECT_ENVIRONMENT) {
+                    outside = select(around.near, around.far, above < below);
+                }
+                below = min(below, above);
             }
             filled = found.filled;
             inside.densities[end] = found.density;
-            let far = diffusion_below(found, below);
+            found = diffusion_at_depth(found, below);
+            let far = diffusion_below(found, below, outside);
             if (end == 0u) {
                 inside.depth = found.depth;
             } else {
@@ -206,11 +323,14 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, h_eye: 
     if (inside.densities[DIFFUSION_PIECES] > 0.0f) {
         scattered += exp(-gone) * near;
     }
-    inside.scattered = body.largest * scattered * vec3f(
-        diffusion_angle(cosine_eye, h_eye.x, body.h_normal.x, DIFFUSION_MILNE),
-        diffusion_angle(cosine_eye, h_eye.y, body.h_normal.y, DIFFUSION_MILNE),
-        diffusion_angle(cosine_eye, h_eye.z, body.h_normal.z, DIFFUSION_MILNE),
-    );
+    inside.scattered = body.largest * scattered * angles;
+    inside.straight = vec3f(0.0f);
+    if (EFFECT_ENVIRONMENT) {
+        if (inside.densities[DIFFUSION_PIECES] == 0.0f) {
+            // The angles' factor, since the local part is that of a half space, through which nothing comes.
+            inside.straight = angles * exp(-gone) * around.behind;
+        }
+    }
     return inside;
 }
 
@@ -259,7 +379,12 @@ fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, i
         var way = diffusion_way(layer, ends[end].xyz, toward_light);
         // A texel spans much of the surface's height where light grazes it; a lit surface counts as flat there.
         let flat = ends[end].w * cosines.x / max(cosines.y, 0.02f);
-        way = mix(way, flat, lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y)));
+        var flatness = lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y));
+        if (EFFECT_DIELECTRIC) {
+            // The map knows the way of light that is not refracted.
+            flatness = lit;
+        }
+        way = mix(way, flat, flatness);
         way = select(way, way * (1.0f - lit), end == 0u);
         // Where the eye's way leaves the body, light on its way to there goes through the matter before.
         let density = select(densities[max(end, 1u) - 1u], densities[end], densities[end] > 0.0f);
@@ -283,18 +408,29 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
     let toward_eye = normalize(view.eye - input.position);
     let squared = dot(input.normal, input.normal);
     let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
-    let cosine_eye = clamp(dot(normal, toward_eye), 0.02f, 1.0f);
+    let cosine_outside = clamp(dot(normal, toward_eye), 0.02f, 1.0f);
     let albedo = (1.0f - body.gamma) * (1.0f + body.gamma);
+    // Inside of the surface.
+    var cosine_eye = cosine_outside;
+    var back = toward_eye;
+    if (EFFECT_DIELECTRIC) {
+        cosine_eye = half_space_refract(cosine_outside, body.index);
+        back = normalize(toward_eye / body.index + (cosine_eye - cosine_outside / body.index) * normal);
+    }
+    var around: DiffusionAround;
+    if (EFFECT_ENVIRONMENT) {
+        around = diffusion_around(normal, back);
+    }
 
     var sent = vec3f(0.0f);
     //+diffusion {
     var inside: DiffusionWay;
     var node = vec3f(0.0f);
     var gap = vec3f(0.0f);
-    let h_eye = diffusion_h(cosine_eye);
+    let angles = diffusion_angles(cosine_eye);
     if (EFFECT_DIFFUSION) {
-        inside = diffusion_inside(input.position, toward_eye, cosine_eye, h_eye);
-        sent = 0.07957747f * albedo * inside.scattered;
+        inside = diffusion_inside(input.position, back, cosine_eye, angles, around);
+        sent = 0.07957747f * albedo * inside.scattered + inside.straight;
         // The two nodes below the point, of whose distances the local part is made.
         let start = voxelization_local(body.grid, input.position);
         let behind = diffusion_sample(start - normal * (inside.depth + 1.0f));
@@ -320,24 +456,34 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         }
         counted = light;
         let lit = select(0.0f, visible, cosine > 0.0f);
+        // Behind the surface: the cosine, and the irradiance perpendicular to the light. Light that comes out
+        // from the far side has entered there, at some angle.
+        var cosine_light = cosine;
+        var entered = arrival.irradiance;
+        if (EFFECT_DIELECTRIC) {
+            let met = select(1.0f, cosine, lit > 0.0f);
+            cosine_light = half_space_refract(met, body.index);
+            entered *= (1.0f - fresnel_dielectric(met, body.index)) * met / cosine_light;
+        }
         if (EFFECT_DIFFUSION) {
-            sent += 0.07957747f * albedo * arrival.irradiance * diffusion_single(layer, arrival.direction, lit, vec2f(cosine_eye, cosine), inside);
+            sent += 0.07957747f * albedo * entered * diffusion_single(layer, arrival.direction, lit, vec2f(cosine_eye, cosine_light), inside);
         }
         if (lit > 0.0f) {
+            let law = vec3f(
+                diffusion_law(cosine_eye, cosine_light, body.gamma.x, body.gain.x),
+                diffusion_law(cosine_eye, cosine_light, body.gamma.y, body.gain.y),
+                diffusion_law(cosine_eye, cosine_light, body.gamma.z, body.gain.z),
+            );
             if (EFFECT_DIFFUSION) {
-                let h_light = diffusion_h(cosine);
-                sent += lit * arrival.irradiance * vec3f(
-                    diffusion_local(cosine_eye, cosine, h_eye.x, h_light.x, body.gamma.x, node.x, gap.x),
-                    diffusion_local(cosine_eye, cosine, h_eye.y, h_light.y, body.gamma.y, node.y, gap.y),
-                    diffusion_local(cosine_eye, cosine, h_eye.z, h_light.z, body.gamma.z, node.z, gap.z),
+                let both = angles * diffusion_angles(cosine_light);
+                sent += lit * entered * vec3f(
+                    diffusion_local(cosine_eye, cosine_light, law.x, body.gamma.x, body.milne, node.x, gap.x, both.x),
+                    diffusion_local(cosine_eye, cosine_light, law.y, body.gamma.y, body.milne, node.y, gap.y, both.y),
+                    diffusion_local(cosine_eye, cosine_light, law.z, body.gamma.z, body.milne, node.z, gap.z, both.z),
                 );
             }
             if (!EFFECT_DIFFUSION) {  //+diffusion
-                sent += lit * cosine * arrival.irradiance * vec3f(
-                    half_space_brdf(cosine_eye, cosine, body.gamma.x),
-                    half_space_brdf(cosine_eye, cosine, body.gamma.y),
-                    half_space_brdf(cosine_eye, cosine, body.gamma.z),
-                );
+                sent += lit * entered * law;
             }  //+diffusion
             if (EFFECT_MICROFACET) {
                 highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
@@ -345,12 +491,29 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         }
     }
     if (EFFECT_ENVIRONMENT) {
-        let weights = cdrf_harmonic_weights(0.0f);
-        sent += 0.31830987f * harmonics_irradiance(harmonics_around(normal), weights, weights, weights) * vec3f(
-            half_space_directional(cosine_eye, body.gamma.x),
-            half_space_directional(cosine_eye, body.gamma.y),
-            half_space_directional(cosine_eye, body.gamma.z),
+        let law = vec3f(
+            diffusion_law_around(cosine_eye, body.gamma.x),
+            diffusion_law_around(cosine_eye, body.gamma.y),
+            diffusion_law_around(cosine_eye, body.gamma.z),
         );
+        if (EFFECT_DIFFUSION) {
+            sent += around.radiance * vec3f(
+                diffusion_local_around(cosine_eye, law.x, body.gamma.x, body.milne, node.x, gap.x, angles.x),
+                diffusion_local_around(cosine_eye, law.y, body.gamma.y, body.milne, node.y, gap.y, angles.y),
+                diffusion_local_around(cosine_eye, law.z, body.gamma.z, body.milne, node.z, gap.z, angles.z),
+            );
+        }
+        if (!EFFECT_DIFFUSION) {  //+diffusion
+            sent += around.radiance * law;
+        }  //+diffusion
+    }
+    if (EFFECT_DIELECTRIC) {
+        var passing = 1.0f - fresnel_dielectric(cosine_outside, body.index);
+        if (EFFECT_REFLECTION) {
+            // A polished surface's share is taken where its reflection is added.
+            passing = select(passing, 1.0f, body.alpha == 0.0f);
+        }
+        sent *= passing / (body.index * body.index);
     }
     var radiance = sent;
     if (EFFECT_REFLECTION) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; light that is not yet scattered as the source of diffusion as in Ishimaru, "Wave
 //   Propagation and Scattering in Random Media", 1978, chapter 9.
-// requires: diffusion, half_space, reflective_shadow_map, voxelization
+// requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
 // parts: lights, light_views, diffusion_nodes
 //
 // Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map,
@@ -11,6 +11,10 @@
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+// Light from all around, which the recipe diffusion_cells has let in. Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
+// The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
+override EFFECT_DIELECTRIC: bool = false;
 
 // Light that fills one voxel's face, as a number of units. Light is added up in whole numbers, so that
 // its order makes no difference; sixteen times as much on every side of a voxel still fits.
@@ -28,6 +32,8 @@ struct DiffusionSource {
     gamma: vec3f,
     // The irradiance that counts as 1: at least the greatest that arrives anywhere.
     largest: vec3f,
+    // Index of refraction, relative to the medium outside.
+    index: f32,
 }
 
 @group(0) @binding(0) var<uniform> source: DiffusionSource;
@@ -39,6 +45,8 @@ struct DiffusionSource {
 @group(1) @binding(3) var<storage, read> density: array<f32>;
 // The right side of the equations, a number for each channel.
 @group(1) @binding(4) var<storage, read_write> right: array<vec4f>;
+// What the light from all around adds to it, three numbers for each voxel, as bits.
+@group(1) @binding(5) var<storage, read> entering: array<u32>;
 
 // The eight nodes around a point, and their shares in what lies between them.
 struct DiffusionAround {
@@ -50,14 +58,18 @@ struct DiffusionAround {
     depth: f32,
 }
 
-// The nodes around a point, given in voxel spacings from the grid's corner.
-fn diffusion_around(place: vec3f, cells: u32) -> DiffusionAround {
+// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface.
+fn diffusion_around(place: vec3f, below: f32, cells: u32) -> DiffusionAround {
     let last = f32(cells - 1u);
     let low = floor(place - 0.5f);
     let fraction = place - 0.5f - low;
     var around: DiffusionAround;
+    var depths: array<f32, 8>;
     var whole = 0.0f;
     var depth = 0.0f;
+    var square = 0.0f;
+    var shallowest = DIFFUSION_NODE_DEPTH;
+    var deepest = 0.0f;
     for (var corner = 0u; corner < 8u; corner++) {
         let step = vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
         let voxel = vec3u(clamp(low + vec3f(step), vec3f(0.0f), vec3f(last)));
@@ -66,14 +78,24 @@ fn diffusion_around(place: vec3f, cells: u32) -> DiffusionAround {
         let weight = diffusion_weight(fraction, corner, diffusion_volume(word));
         around.voxels[corner] = index;
         around.weights[corner] = weight;
+        let of_node = diffusion_depth(word);
+        depths[corner] = of_node;
         whole += weight;
-        depth += weight * diffusion_depth(word);
+        depth += weight * of_node;
+        square += weight * of_node * of_node;
+        if (weight > 0.0f) {
+            shallowest = min(shallowest, of_node);
+            deepest = max(deepest, of_node);
+        }
     }
     let scale = select(0.0f, 1.0f / max(whole, 1e-12f), whole > 0.0f);
+    depth *= scale;
+    let variance = max(square * scale - depth * depth, 0.0f);
+    let slope = diffusion_slope(below - depth, variance, depth - shallowest, deepest - depth);
     for (var corner = 0u; corner < 8u; corner++) {
-        around.weights[corner] *= scale;
+        around.weights[corner] *= scale * max(1.0f + slope * (depths[corner] - depth), 0.0f);
     }
-    around.depth = depth * scale;
+    around.depth = depth + slope * variance;
     return around;
 }
 
@@ -83,6 +105,34 @@ fn diffusion_filled(place: vec3f) -> bool {
     let voxel = vec3u(clamp(2.0f * place, vec3f(0.0f), vec3f(f32(count - 1u))));
     let words = (count + 31u) / 32u;
     return ((fine[words * (voxel.y + count * voxel.z) + voxel.x / 32u] >> (voxel.x % 32u)) & 1u) != 0u;
+}
+
+// A difference of positions along the map, to the nearer of the two texels beside one.
+fn diffusion_beside(texel: vec3u, step: vec2i, position: vec3f) -> vec3f {
+    let last = vec2i(i32(textureDimensions(maps).x) - 1i);
+    let after = textureLoad(maps, clamp(vec2i(texel.xy) + step, vec2i(0i), last), texel.z, 0);
+    let before = textureLoad(maps, clamp(vec2i(texel.xy) - step, vec2i(0i), last), texel.z, 0);
+    let forth = after.xyz - position;
+    let back = position - before.xyz;
+    let nearer = dot(forth, forth) < dot(back, back);
+    return select(back, forth, select(after.w >= 0.0f, nearer, before.w >= 0.0f && after.w >= 0.0f));
+}
+
+// Where light goes on behind the surface: refracted at the plane through texels beside this one.
+fn diffusion_entering(texel: vec3u, position: vec3f, toward_light: vec3f) -> vec3f {
+    let across = cross(
+        diffusion_beside(texel, vec2i(1i, 0i), position),
+        diffusion_beside(texel, vec2i(0i, 1i), position),
+    );
+    let squared = dot(across, across);
+    if (squared <= 0.0f) {
+        return toward_light;
+    }
+    var normal = across * inverseSqrt(squared);
+    normal = select(-normal, normal, dot(normal, toward_light) > 0.0f);
+    let cosine = dot(normal, toward_light);
+    let inside = half_space_refract(cosine, source.index);
+    return normalize(toward_light / source.index + (inside - cosine / source.index) * normal);
 }
 
 @compute @workgroup_size(8, 8)
@@ -115,19 +165,29 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     let side = min(width * f32(stride), 3.0f);
     let slant = select(1.0f, abs(dot(arrival.direction, view.axis)), view.lamp == 1u);
     let share = arrival.irradiance / source.largest * (side * side * slant);
-    let cosine = seen.w;
+    var cosine = seen.w;
+    // Against the light's way inside.
+    var back = arrival.direction;
     var energy = share * (1.0f - source.gamma) * (1.0f + source.gamma);
-    for (var channel = 0u; channel < 3u; channel++) {
-        let gamma = source.gamma[channel];
-        energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), DIFFUSION_MILNE);
-    }
+    if (EFFECT_DIELECTRIC) {  //+dielectric
+        //+dielectric {
+        energy *= 1.0f - fresnel_dielectric(cosine, source.index);
+        back = diffusion_entering(texel, seen.xyz, arrival.direction);
+        cosine = half_space_refract(cosine, source.index);
+        //+dielectric }
+    } else {  //+dielectric
+        for (var channel = 0u; channel < 3u; channel++) {
+            let gamma = source.gamma[channel];
+            energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), gamma, DIFFUSION_MILNE);
+        }
+    }  //+dielectric
     var gone = vec3f(0.0f);
     var way = 0.0f;
     var entered = false;
     for (var step = 0u; step < 1024u; step++) {
         var local = 1.0f;
         if (EFFECT_EXTINCTION_PER_VOXEL) {
-            let voxel = vec3u(clamp(entry - (way + 1e-3f) * arrival.direction, vec3f(0.0f), vec3f(f32(cells - 1u))));
+            let voxel = vec3u(clamp(entry - (way + 1e-3f) * back, vec3f(0.0f), vec3f(f32(cells - 1u))));
             local = density[voxel.x + cells * (voxel.y + cells * voxel.z)];
         }
         // Steps are an optical depth long, in the densest channel of which anything is left.
@@ -136,7 +196,7 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
         let length = min(0.5f, 1.0f / max(densest * local, 1e-6f));
         // Where the mean of what is scattered along the step lies.
         let middle = way + length * (0.5f - 0.083f * densest * local * length);
-        let place = entry - middle * arrival.direction;
+        let place = entry - middle * back;
         let inside = diffusion_filled(place);
         entered = entered || inside;
         // The surface cuts voxels, so that a ray may begin beside the first filled one.
@@ -144,8 +204,8 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
             break;
         }
         let thickness = source.extinction * (local * length);
-        let around = diffusion_around(place, cells);
         let below = middle * cosine;
+        let around = diffusion_around(place, below, cells);
         var given = vec3f(0.0f);
         for (var channel = 0u; channel < 3u; channel++) {
             given[channel] = energy[channel] * diffusion_scattered(gone[channel], thickness[channel])
@@ -167,8 +227,8 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
 
 @compute @workgroup_size(64)
 fn diffusion_source_finish(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let all = source.grid.cells * source.grid.cells * source.grid.cells;
-    for (var voxel = invocation.x; voxel < all; voxel += 64u * groups.x) {
+    let count = source.grid.cells * source.grid.cells * source.grid.cells;
+    for (var voxel = invocation.x; voxel < count; voxel += 64u * groups.x) {
         if (nodes[voxel] == 0u) {
             continue;
         }
@@ -177,6 +237,10 @@ fn diffusion_source_finish(@builtin(global_invocation_id) invocation: vec3u, @bu
             atomicLoad(&loads[3u * voxel + 1u]),
             atomicLoad(&loads[3u * voxel + 2u]),
         ));
-        right[voxel] = vec4f(3.0f * source.extinction * load / DIFFUSION_LIGHT, 0.0f);
+        var all = 3.0f * source.extinction * load / DIFFUSION_LIGHT;
+        if (EFFECT_ENVIRONMENT) {
+            all += bitcast<vec3f>(vec3u(entering[3u * voxel], entering[3u * voxel + 1u], entering[3u * voxel + 2u]));
+        }
+        right[voxel] = vec4f(all, 0.0f);
     }
 }

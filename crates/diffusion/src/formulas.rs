@@ -224,12 +224,14 @@ fn surface() -> Vec<Formula> {
                 0 => draws.pick(&[mirror::DIFFUSION_MILNE, 0.5, 20.0]),
                 _ => draws.between(0.5, 20.0),
             };
-            (cosine, draws.between(1.0, 3.0), draws.between(1.0, 3.0), milne)
+            (cosine, draws.between(1.0, 3.0), draws.between(1.0, 3.0), matter(draws), milne)
         })
         .edge("grazing", |(cosine, ..)| cosine == 0.0)
         .edge("along the normal", |(cosine, ..)| cosine == 1.0)
         .edge("below the surface", |(cosine, ..)| cosine < 0.0)
-        .invariant("positive", |_, factor: f32| within("factor", factor, 0.33, 9.01))
+        .edge("nothing absorbed", |(cosine, _, _, gamma, _)| cosine > 0.1 && gamma == 0.0)
+        .edge("nothing scattered", |(cosine, _, _, gamma, _)| cosine > 0.1 && gamma == 1.0)
+        .invariant("positive", |_, factor: f32| within("factor", factor, 0.12, 9.01))
         .build(),
     ]
 }
@@ -367,101 +369,148 @@ fn rays() -> Vec<Formula> {
     ]
 }
 
-/// Draws H: any value that it takes, its ends, or out of range.
-fn h(draws: &mut Draws<'_>) -> f32 {
+/// Draws an extrapolation length: a boundary's, the ends, or out of range.
+fn extrapolation(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
-        0 => draws.pick(&[1.0, 2.9, 3.0, 0.5, 4.0]),
-        _ => draws.between(1.0, 2.909),
+        0 => draws.pick(&[mirror::DIFFUSION_MILNE, 0.5, 20.0, 0.0, 30.0]),
+        _ => draws.between(0.5, 20.0),
+    }
+}
+
+/// Draws a number from 0 to a limit, its ends, or out of range.
+fn up_to(draws: &mut Draws<'_>, limit: f32) -> f32 {
+    match draws.below(4) {
+        0 => draws.pick(&[0.0, limit, -0.5, 2.0 * limit]),
+        _ => draws.between(0.0, limit),
     }
 }
 
 fn half_space() -> Vec<Formula> {
-    const NAIVE: &str = "diffusion_local_naive";
+    [of_light(), of_parts(), of_surroundings()].into_iter().flatten().collect()
+}
+
+fn of_light() -> Vec<Formula> {
+    const NAIVE: &str = "diffusion_fluence_naive";
     vec![
         formula(M, "diffusion_fluence", mirror::fluence, oracle::fluence, |draws| {
-            (depth(draws), cosine(draws), matter(draws))
+            (depth(draws), cosine(draws), matter(draws), extrapolation(draws))
         })
-        .edge("at the surface", |(depth, cosine, gamma)| depth == 0.0 && cosine > 0.1 && gamma < 0.9)
-        .edge("grazing", |(_, cosine, gamma)| cosine == 0.0 && gamma < 0.9)
-        .edge("at the pole", |(depth, cosine, gamma)| {
+        .edge("at the surface", |(depth, cosine, gamma, _)| depth == 0.0 && cosine > 0.1 && gamma < 0.9)
+        .edge("grazing", |(_, cosine, gamma, _)| cosine == 0.0 && gamma < 0.9)
+        .edge("at the pole", |(depth, cosine, gamma, _)| {
             depth > 0.1 && depth < 10.0 && cosine == 1.0 && (gamma - AT_POLE).abs() < 1e-6
         })
-        .edge("deep, nothing absorbed", |(depth, cosine, gamma)| depth > 1e5 && cosine > 0.1 && gamma == 0.0)
-        .edge("nothing scattered", |(_, cosine, gamma)| cosine > 0.1 && gamma == 1.0)
-        .invariant("in [0, 5.14]", |_, fluence: f32| within("fluence", fluence, 0.0, 5.14))
+        .edge("deep, nothing absorbed", |(depth, cosine, gamma, _)| depth > 1e5 && cosine > 0.1 && gamma == 0.0)
+        .edge("nothing scattered", |(_, cosine, gamma, _)| cosine > 0.1 && gamma == 1.0)
+        .edge("a boundary that reflects much", |(_, cosine, gamma, milne)| cosine > 0.1 && gamma < 0.9 && milne > 20.0)
+        .invariant("in [0, 63]", |_, fluence: f32| within("fluence", fluence, 0.0, 63.01))
         .hard_case(
             "diffusion decays as fast as the light",
-            (1.0, 1.0, AT_POLE),
+            (1.0, 1.0, AT_POLE, mirror::DIFFUSION_MILNE),
             (&[0.520_675_525_373], 1e-6),
-            ("diffusion_fluence_naive", 1e-3),
+            (NAIVE, 1e-3),
         )
         .hard_case(
             "exactly grazing",
-            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, mirror::DIFFUSION_MILNE),
             (&[2.131_199_955_94e-9], 1e-14),
-            ("diffusion_fluence_naive", f64::INFINITY),
+            (NAIVE, f64::INFINITY),
         )
         .build(),
-        formula(M, "diffusion_fluence_naive", mirror::fluence_naive, oracle::fluence_naive, |draws| {
-            (draws.between(0.0, 3.0), draws.between(0.2, 1.0), draws.between(0.0, 0.4))
+        formula(M, NAIVE, mirror::fluence_naive, oracle::fluence_naive, |draws| {
+            (draws.between(0.0, 3.0), draws.between(0.2, 1.0), draws.between(0.0, 0.4), draws.between(0.7, 4.0))
         })
         .benign(2e-5)
         .build(),
         formula(M, "diffusion_tail", mirror::tail, oracle::tail, |draws| {
-            (depth(draws), cosine(draws), cosine(draws), matter(draws))
+            (depth(draws), cosine(draws), cosine(draws), matter(draws), extrapolation(draws))
         })
-        .edge("from the surface", |(depth, eye, light, gamma)| depth == 0.0 && eye > 0.1 && light > 0.1 && gamma < 0.9)
-        .edge("both grazing", |(_, eye, light, gamma)| eye == 0.0 && light == 0.0 && gamma < 0.9)
-        .edge("the eye grazing at the surface", |(depth, eye, light, gamma)| {
+        .edge("from the surface", |(depth, eye, light, gamma, _)| {
+            depth == 0.0 && eye > 0.1 && light > 0.1 && gamma < 0.9
+        })
+        .edge("both grazing", |(_, eye, light, gamma, _)| eye == 0.0 && light == 0.0 && gamma < 0.9)
+        .edge("the eye grazing at the surface", |(depth, eye, light, gamma, _)| {
             depth == 0.0 && eye == 0.0 && light > 0.1 && gamma < 0.9
         })
-        .edge("at the pole", |(depth, _, light, gamma)| depth > 0.1 && light == 1.0 && (gamma - AT_POLE).abs() < 1e-6)
-        .edge("nothing scattered", |(.., gamma)| gamma == 1.0)
-        .invariant("in [0, 3.64]", |_, seen: f32| within("seen", seen, 0.0, 3.64))
-        .build(),
-        formula(M, "diffusion_local", mirror::local, oracle::local, |draws| {
-            (cosine(draws), cosine(draws), h(draws), h(draws), matter(draws), depth(draws), depth(draws))
+        .edge("at the pole", |(depth, _, light, gamma, _)| {
+            depth > 0.1 && light == 1.0 && (gamma - AT_POLE).abs() < 1e-6
         })
-        .edge("both grazing", |(eye, light, _, _, gamma, ..)| eye == 0.0 && light == 0.0 && gamma < 0.9)
-        .edge("a node at the surface", |(.., gamma, depth, _)| gamma < 0.9 && depth == 0.0)
-        .edge("no second node", |(.., gamma, _, gap)| gamma < 0.9 && gap == 0.0)
-        .edge("deep nodes", |(.., gamma, depth, gap)| gamma < 0.9 && depth > 1e5 && gap > 1e5)
-        .edge("nothing absorbed", |(eye, light, _, _, gamma, ..)| eye > 0.1 && light > 0.1 && gamma == 0.0)
-        .edge("at the pole", |(_, light, _, _, gamma, ..)| light == 1.0 && (gamma - AT_POLE).abs() < 1e-6)
-        .edge("nothing scattered", |(.., gamma, _, _)| gamma == 1.0)
-        .invariant("in [-0.3, 0.64]", |_, part: f32| within("part", part, -0.3, 0.64))
-        .invariant(
-            "0 if nothing is scattered",
-            |(.., gamma, _, _), part: f32| {
-                if gamma >= 1.0 { near("part", part.into(), 0.0, 0.0) } else { Ok(()) }
-            },
-        )
+        .edge("nothing scattered", |(.., gamma, _)| gamma == 1.0)
+        .invariant("in [0, 61.5]", |_, seen: f32| within("seen", seen, 0.0, 61.51))
+        .build(),
+    ]
+}
+
+fn of_parts() -> Vec<Formula> {
+    const NAIVE: &str = "diffusion_local_naive";
+    const MILNE: f32 = mirror::DIFFUSION_MILNE;
+    vec![
+        formula(M, "diffusion_local", mirror::local, oracle::local, |draws| {
+            let law = up_to(draws, 4.0);
+            let angle = up_to(draws, 1.25);
+            let of_matter = (matter(draws), extrapolation(draws));
+            (cosine(draws), cosine(draws), law, of_matter.0, of_matter.1, depth(draws), depth(draws), angle)
+        })
+        .edge("both grazing", |(eye, light, _, gamma, ..)| eye == 0.0 && light == 0.0 && gamma < 0.9)
+        .edge("a node at the surface", |(_, _, _, gamma, _, depth, _, _)| gamma < 0.9 && depth == 0.0)
+        .edge("no second node", |(_, _, _, gamma, _, _, gap, _)| gamma < 0.9 && gap == 0.0)
+        .edge("deep nodes", |(_, _, _, gamma, _, depth, gap, _)| gamma < 0.9 && depth > 1e5 && gap > 1e5)
+        .edge("nothing absorbed", |(eye, light, _, gamma, ..)| eye > 0.1 && light > 0.1 && gamma == 0.0)
+        .edge("at the pole", |(_, light, _, gamma, ..)| light == 1.0 && (gamma - AT_POLE).abs() < 1e-6)
+        .edge("nothing scattered", |(_, _, _, gamma, ..)| gamma == 1.0)
+        .edge("a grid that is not shown", |(_, _, _, gamma, .., angle)| gamma < 0.9 && angle == 0.0)
+        .invariant("in [-7, 4]", |_, part: f32| within("part", part, -7.0, 4.0))
+        .invariant("the law if nothing is scattered", |(_, _, law, gamma, ..), part: f32| {
+            if gamma >= 1.0 { near("part", part.into(), law.clamp(0.0, 4.0).into(), 0.0) } else { Ok(()) }
+        })
         .hard_case(
             "diffusion decays as fast as the light",
-            (0.5, 1.0, 1.5, 1.75, AT_POLE, 1.0, 1.0),
-            (&[0.039_695_882_203_6], 5e-7),
+            (0.5, 1.0, 0.092_842_1, AT_POLE, MILNE, 1.0, 1.0, 1.0),
+            (&[0.039_697_560_779], 5e-7),
             (NAIVE, 1e-4),
         )
         .hard_case(
             "no second node",
-            (0.5, 1.0, 2.0, 2.5, 0.0, 0.5, 0.0),
-            (&[-0.029_031_408_877_9], 5e-7),
+            (0.5, 1.0, 0.265_258_24, 0.0, MILNE, 0.5, 0.0, 1.0),
+            (&[-0.029_031_394_742_8], 5e-7),
             (NAIVE, f64::INFINITY),
         )
         .hard_case(
             "light exactly grazing",
-            (0.5, 0.0, 2.0, 1.0, 0.0, 0.5, 0.5),
-            (&[1.533e-11], 1e-13),
+            (0.5, 0.0, 3e-10, 0.0, MILNE, 0.5, 0.5, 1.0),
+            (&[-2.977_680_147_5e-12], 1e-13),
             (NAIVE, f64::INFINITY),
         )
         .build(),
         formula(M, NAIVE, mirror::local_naive, oracle::local_naive, |draws| {
             let (eye, light) = (draws.between(0.2, 1.0), draws.between(0.2, 1.0));
-            let (h_eye, h_light) = (draws.between(2.8, 3.0), draws.between(2.8, 3.0));
-            let gamma = draws.between(0.1, 0.4);
-            (eye, light, h_eye, h_light, gamma, draws.between(0.5, 4.0), draws.between(0.3, 2.0))
+            let (law, gamma) = (draws.between(0.5, 1.0), draws.between(0.1, 0.4));
+            let (milne, angle) = (draws.between(0.7, 4.0), draws.between(0.8, 1.1));
+            (eye, light, law, gamma, milne, draws.between(0.5, 4.0), draws.between(0.3, 2.0), angle)
         })
-        .benign(1e-3)
+        .benign(2e-5)
+        .build(),
+    ]
+}
+
+fn of_surroundings() -> Vec<Formula> {
+    vec![
+        formula(M, "diffusion_local_around", mirror::local_around, oracle::local_around, |draws| {
+            let (law, angle) = (up_to(draws, 1.0), up_to(draws, 1.25));
+            let of_matter = (matter(draws), extrapolation(draws));
+            (cosine(draws), law, of_matter.0, of_matter.1, depth(draws), depth(draws), angle)
+        })
+        .edge("grazing", |(eye, _, gamma, ..)| eye == 0.0 && gamma < 0.9)
+        .edge("a node at the surface", |(_, _, gamma, _, depth, ..)| gamma < 0.9 && depth == 0.0)
+        .edge("no second node", |(_, _, gamma, _, _, gap, _)| gamma < 0.9 && gap == 0.0)
+        .edge("deep nodes", |(_, _, gamma, _, depth, gap, _)| gamma < 0.9 && depth > 1e5 && gap > 1e5)
+        .edge("nothing absorbed", |(eye, _, gamma, .., angle)| eye > 0.1 && gamma == 0.0 && angle == 1.25)
+        .edge("nothing scattered", |(_, _, gamma, ..)| gamma == 1.0)
+        .invariant("in [-1.25, 1]", |_, part: f32| within("part", part, -1.250_01, 1.0))
+        .invariant("a white furnace", |(_, law, gamma, .., angle), part: f32| {
+            let left = f64::from(law.clamp(0.0, 1.0)) - f64::from(angle.clamp(0.0, 1.25));
+            if gamma <= 0.0 { near("part", part.into(), left, 1e-5) } else { Ok(()) }
+        })
         .build(),
     ]
 }
@@ -488,6 +537,33 @@ fn nodes() -> Vec<Formula> {
         .edge("more than three bits", |(_, corner, _)| corner > 7)
         .invariant("at most the volume", |(.., volume), weight: f32| {
             within("weight", weight, 0.0, 1.000_102 * f64::from(volume) + FLUSHED)
+        })
+        .build(),
+        formula(M, "diffusion_slope", mirror::slope, oracle::slope, |draws| {
+            let missing = match draws.below(3) {
+                0 => draws.signed(-59, 58),
+                _ => draws.between(-2.0, 2.0),
+            };
+            let variance = match draws.below(3) {
+                0 => draws.nudged(mirror::DIFFUSION_LEAST_VARIANCE, 3),
+                _ => length(draws),
+            };
+            let distance = |draws: &mut Draws<'_>| match draws.below(3) {
+                0 => draws.nudged(mirror::DIFFUSION_LEAST_STEP, 3),
+                _ => length(draws),
+            };
+            (missing, variance, distance(draws), distance(draws))
+        })
+        .edge("nodes of one depth", |(missing, variance, ..)| missing != 0.0 && variance == 0.0)
+        .edge("between the nodes", |(missing, variance, above, below)| {
+            variance > 0.01 && missing * above < variance && -missing * below < variance && missing != 0.0
+        })
+        .edge("above all nodes", |(missing, variance, _, below)| below > 0.1 && -missing * below > 2.0 * variance)
+        .edge("below all nodes", |(missing, variance, above, _)| above > 0.1 && missing * above > 2.0 * variance)
+        .invariant("no weight is negative", |(_, _, above, below), slope: f32| {
+            let [above, below] = [above, below].map(|distance| f64::from(distance.max(mirror::DIFFUSION_LEAST_STEP)));
+            let least = (1.0 - f64::from(slope) * above).min(1.0 + f64::from(slope) * below);
+            if least >= -1e-6 { Ok(()) } else { Err(format!("a weight of {least}")) }
         })
         .build(),
         formula(M, "diffusion_relax", mirror::relax, oracle::relax, |draws| {

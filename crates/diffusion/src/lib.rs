@@ -11,7 +11,7 @@
 //! // Equal ends: what the segment absorbs of 1 is what it sends.
 //! assert!((segment(1.0, 1.0, 1.0) - 0.632_121).abs() < 1e-6);
 //! // Deep inside matter that absorbs nothing, lit along the normal.
-//! assert!((fluence(100.0, 1.0, 0.0) - 3.0 * (1.0 + DIFFUSION_MILNE)).abs() < 1e-5);
+//! assert!((fluence(100.0, 1.0, 0.0, DIFFUSION_MILNE) - 3.0 * (1.0 + DIFFUSION_MILNE)).abs() < 1e-5);
 //! ```
 
 #[cfg(feature = "formulas")]
@@ -30,12 +30,20 @@ pub const DIFFUSION_LEAST_DEPTH: f32 = 0.05;
 pub const DIFFUSION_LEAST_DISTANCE: f32 = 0.25;
 /// Added to all weights of corners.
 pub const DIFFUSION_LEAST_WEIGHT: f32 = 1e-4;
+/// The least variance of the nodes' depths, in squared spacings.
+pub const DIFFUSION_LEAST_VARIANCE: f32 = 1e-4;
+/// The least distance of a node's depth from the mean, in spacings.
+pub const DIFFUSION_LEAST_STEP: f32 = 0.01;
 /// The largest relative index.
 pub const DIFFUSION_DENSEST: f32 = 2.5;
 /// Cosines below this count as it.
 pub const DIFFUSION_GRAZING: f32 = 1e-9;
 /// The largest optical depth whose transmittance is computed.
 pub const DIFFUSION_OPAQUE: f32 = 87.0;
+/// The least extrapolation length in mean free paths.
+pub const DIFFUSION_NEAREST: f32 = 0.5;
+/// The largest extrapolation length in mean free paths.
+pub const DIFFUSION_OUTERMOST: f32 = 20.0;
 /// The largest optical depth of a node.
 pub const DIFFUSION_DEEPEST: f32 = 1e6;
 /// The largest optical depth along a line.
@@ -88,9 +96,10 @@ pub fn profile_naive(depth: f32, node_depth: f32, milne: f32) -> f32 {
 }
 
 /// Returns what the exact law of a half space adds to diffusion's at an angle, as a factor.
-pub fn angle(cosine: f32, h: f32, h_normal: f32, milne: f32) -> f32 {
+pub fn angle(cosine: f32, h: f32, h_normal: f32, gamma: f32, milne: f32) -> f32 {
     let m = cosine.clamp(0.0, 1.0);
-    h * (1.0 + milne) / (h_normal * (m + milne))
+    let kappa = 1.7320508 * gamma.clamp(0.0, 1.0);
+    h * (1.0 + milne) * (1.0 + kappa * m) / (h_normal * (m + milne) * (1.0 + kappa))
 }
 
 /// Returns the means of transmittance over a line, weighted towards its start and towards its end.
@@ -165,97 +174,122 @@ pub fn unscattered_naive(thickness: f32, near: f32, far: f32) -> f32 {
 }
 
 /// Returns the fluence in a half space at a depth, lit by parallel light.
-pub fn fluence(depth: f32, cosine_light: f32, gamma: f32) -> f32 {
+pub fn fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let t = depth.clamp(0.0, DIFFUSION_DEEPEST);
     let c = cosine_light.clamp(DIFFUSION_GRAZING, 1.0);
     let g = gamma.clamp(0.0, 1.0);
+    let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508 * g;
     let damped = kappa * t;
     let strength = 3.0 * (1.0 - g) * (1.0 + g) * c / (1.0 + kappa * c);
-    let surface = DIFFUSION_MILNE / (1.0 + kappa * DIFFUSION_MILNE) * (-damped.min(DIFFUSION_OPAQUE)).exp();
+    let surface = z / (1.0 + kappa * z) * (-damped.min(DIFFUSION_OPAQUE)).exp();
     strength * (surface + t * mean(damped, t / c))
 }
 
 /// Computes the same as it is printed, a naive form.
-pub fn fluence_naive(depth: f32, cosine_light: f32, gamma: f32) -> f32 {
+pub fn fluence_naive(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let kappa = 1.7320508 * gamma;
     let m0 = cosine_light;
     let b = -3.0 * (1.0 - gamma * gamma) * m0 * m0 / (1.0 - kappa * kappa * m0 * m0);
-    let a = -b * (1.0 + DIFFUSION_MILNE / m0) / (1.0 + kappa * DIFFUSION_MILNE);
+    let a = -b * (1.0 + milne / m0) / (1.0 + kappa * milne);
     a * (-kappa * depth).exp() + b * (-depth / m0).exp()
 }
 
 /// Returns what the eye sees of [`fluence`] from a depth on.
-pub fn tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32) -> f32 {
+pub fn tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
     let t = depth.clamp(0.0, DIFFUSION_DEEPEST);
     let m = cosine_eye.clamp(DIFFUSION_GRAZING, 1.0);
     let c = cosine_light.clamp(DIFFUSION_GRAZING, 1.0);
     let g = gamma.clamp(0.0, 1.0);
+    let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508 * g;
     let damped = kappa * t;
     let strength = 3.0 * (1.0 - g) * (1.0 + g) * c / (1.0 + kappa * c);
     let left = (-damped.min(DIFFUSION_OPAQUE)).exp() / (1.0 + kappa * m);
     let share = c / (m + c);
-    let surface = (DIFFUSION_MILNE / (1.0 + kappa * DIFFUSION_MILNE) + share * m) * left;
+    let surface = (z / (1.0 + kappa * z) + share * m) * left;
     let seen = (-(t / m).min(DIFFUSION_OPAQUE)).exp();
     strength * seen * (surface + share * t * mean(damped, t / c))
 }
 
 /// Returns what the grid does not show at a lit surface.
-pub fn local(cosine_eye: f32, cosine_light: f32, h_eye: f32, h_light: f32, gamma: f32, depth: f32, gap: f32) -> f32 {
+#[expect(clippy::too_many_arguments, reason = "the shader's")]
+pub fn local(
+    cosine_eye: f32,
+    cosine_light: f32,
+    law: f32,
+    gamma: f32,
+    milne: f32,
+    depth: f32,
+    gap: f32,
+    angle: f32,
+) -> f32 {
     let m = cosine_eye.clamp(DIFFUSION_GRAZING, 1.0);
     let c = cosine_light.clamp(DIFFUSION_GRAZING, 1.0);
-    let eye = h_eye.clamp(1.0, 3.0);
-    let light = h_light.clamp(1.0, 3.0);
+    let exact = law.clamp(0.0, 4.0);
     let g = gamma.clamp(0.0, 1.0);
+    let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let node = depth.clamp(0.0, DIFFUSION_DEEPEST);
     let between = gap.clamp(0.0, DIFFUSION_DEEPEST);
     let end = node + between;
-    let first = fluence(node, c, g);
-    let second = fluence(end, c, g);
-    let start = DIFFUSION_MILNE / (node + DIFFUSION_MILNE);
-    let above = first * segment(start, 1.0, node / m);
+    let first = fluence(node, c, g, z);
+    let second = fluence(end, c, g, z);
+    let above = first * segment(z / (node + z), 1.0, node / m);
     let seen = (-(node / m).min(DIFFUSION_OPAQUE)).exp();
     let below = seen * segment(first, second, between / m);
-    let shown = above + below + tail(end, m, c, g);
-    let multiple = c / (m + c) * ((eye - 1.0) + eye * (light - 1.0));
-    0.07957747 * (1.0 - g) * (1.0 + g) * (multiple - shown)
+    let shown = above + below + tail(end, m, c, g, z);
+    exact - 0.07957747 * (1.0 - g) * (1.0 + g) * (c / (m + c) + angle.clamp(0.0, 1.25) * shown)
 }
 
-/// Computes the same as three closed forms, a naive form.
+/// Computes the same as closed forms, a naive form.
+#[expect(clippy::too_many_arguments, reason = "the shader's")]
 pub fn local_naive(
     cosine_eye: f32,
     cosine_light: f32,
-    h_eye: f32,
-    h_light: f32,
+    law: f32,
     gamma: f32,
+    milne: f32,
     depth: f32,
     gap: f32,
+    angle: f32,
 ) -> f32 {
     let m = cosine_eye;
     let m0 = cosine_light;
-    let z = DIFFUSION_MILNE;
+    let z = milne;
     let albedo = 1.0 - gamma * gamma;
     let kappa = 1.7320508 * gamma;
     let b = -3.0 * albedo * m0 * m0 / (1.0 - kappa * kappa * m0 * m0);
     let a = -b * (1.0 + z / m0) / (1.0 + kappa * z);
     let end = depth + gap;
     let q = (-depth / m).exp();
-    let q_gap = (-gap / m).exp();
-    let deep = (-kappa * depth).exp();
-    let lit = (-depth / m0).exp();
+    let q_end = (-end / m).exp();
     let deep_end = (-kappa * end).exp();
     let lit_end = (-end / m0).exp();
-    let first = a * deep + b * lit;
+    let first = a * (-kappa * depth).exp() + b * (-depth / m0).exp();
     let second = a * deep_end + b * lit_end;
-    let along_deep = a / (1.0 + kappa * m);
-    let along_lit = b / (1.0 + m / m0);
-    let straight = first / (depth + z) * (z + m - (depth + z + m) * q);
-    let bubble = along_deep * (1.0 - deep * q) + along_lit * (1.0 - lit * q) - straight;
-    let line = first * (1.0 - q_gap) + (second - first) / gap * (m - (gap + m) * q_gap);
-    let other = along_deep * (deep - deep_end * q_gap) + along_lit * (lit - lit_end * q_gap) - line;
-    let law = m0 / (m + m0) * (h_eye * h_light - 1.0) - along_deep - along_lit;
-    0.07957747 * albedo * (bubble + q * other + law)
+    let above = first / (depth + z) * (z + m - (depth + z + m) * q);
+    let below = first * (q - q_end) + (second - first) / gap * (m * q - (gap + m) * q_end);
+    let rest = (a * deep_end / (1.0 + kappa * m) + b * lit_end / (1.0 + m / m0)) * q_end;
+    law - 0.07957747 * albedo * (m0 / (m + m0) + angle * (above + below + rest))
+}
+
+/// Returns what the grid does not show under light that comes alike from all around.
+pub fn local_around(cosine_eye: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
+    let m = cosine_eye.clamp(DIFFUSION_GRAZING, 1.0);
+    let exact = law.clamp(0.0, 1.0);
+    let g = gamma.clamp(0.0, 1.0);
+    let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
+    let node = depth.clamp(0.0, DIFFUSION_DEEPEST);
+    let between = gap.clamp(0.0, DIFFUSION_DEEPEST);
+    let end = node + between;
+    let kappa = 1.7320508 * g;
+    let first = (-(kappa * node).min(DIFFUSION_OPAQUE)).exp() / (1.0 + kappa * z);
+    let second = (-(kappa * end).min(DIFFUSION_OPAQUE)).exp() / (1.0 + kappa * z);
+    // At the surface the grid shows the mean of the node's fluence and of that outside.
+    let above = segment((first * z + node) / (node + z), first, node / m);
+    let below = (-(node / m).min(DIFFUSION_OPAQUE)).exp() * segment(first, second, between / m);
+    let shown = above + below + (-(end / m).min(DIFFUSION_OPAQUE)).exp() * second / (1.0 + kappa * m);
+    exact - (1.0 - g) * (1.0 + g) * angle.clamp(0.0, 1.25) * shown
 }
 
 /// Returns the weight of one of the eight nodes about a point.
@@ -264,6 +298,12 @@ pub fn weight(fraction: Vec3, corner: u32, volume: f32) -> f32 {
     let sides = Vec3::new((corner & 1) as f32, ((corner >> 1) & 1) as f32, ((corner >> 2) & 1) as f32);
     let along = sides * inside + (Vec3::ONE - sides) * (Vec3::ONE - inside);
     (along.x * along.y * along.z + DIFFUSION_LEAST_WEIGHT) * volume
+}
+
+/// Returns how the nodes' weights change with their depth, so that their mean depth is the point's.
+pub fn slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
+    let wanted = missing / variance.max(DIFFUSION_LEAST_VARIANCE);
+    wanted.clamp(-1.0 / below.max(DIFFUSION_LEAST_STEP), 1.0 / above.max(DIFFUSION_LEAST_STEP))
 }
 
 /// Returns a node's value that solves its equation for given neighbours.

@@ -1,8 +1,7 @@
 //! The oracle in f64. Integrals of transmittance are Gauss quadratures of what they integrate. The
 //! fluence in a half space is the integral of its source with Green's function of Robin's condition. The
-//! local part is the quadrature of what lies between the solution and the grid's straight lines, plus
-//! Chandrasekhar's law less the quadrature of the whole solution; the solution there is the closed form
-//! with `exp_m1`, which the tests compare with Green's function. The extrapolation length is a quadrature
+//! local parts are quadratures of the grid's straight lines and of the solution below them; the solution
+//! there is the closed form with `exp_m1`, which the tests compare with Green's function. The extrapolation length is a quadrature
 //! of Fresnel's reflectance. Conductances are sums of resistances.
 
 use glam::{DVec2, DVec3};
@@ -14,7 +13,10 @@ const THINNEST: f32 = 1e-3;
 const LEAST_DEPTH: f32 = 0.05;
 const LEAST_DISTANCE: f32 = 0.25;
 const LEAST_WEIGHT: f32 = 1e-4;
+const LEAST_VARIANCE: f32 = 1e-4;
+const LEAST_STEP: f32 = 0.01;
 const GRAZING: f32 = 1e-9;
+const LENGTHS: (f64, f64) = (0.5, 20.0);
 
 /// Optical depth at which quadratures end: 3e-20 of the light is left.
 const END: f64 = 45.0;
@@ -129,10 +131,12 @@ pub fn profile_naive(depth: f64, node_depth: f64, milne: f64) -> f64 {
     profile(depth, node_depth, milne)
 }
 
-/// Divides the two laws, each relative to its value along the normal.
-pub fn angle(cosine: f64, h: f64, h_normal: f64, milne: f64) -> f64 {
-    let straight = (milne + cosine.clamp(0.0, 1.0)) / (milne + 1.0);
-    h / h_normal / straight
+/// Divides the two laws of light that grows inwards as e^(κ t), each relative to its value along the normal:
+/// H / (1 - κ m), and diffusion's (z + m) / (1 - (κ m)²).
+pub fn angle(cosine: f64, h: f64, h_normal: f64, gamma: f64, milne: f64) -> f64 {
+    let (m, kappa) = (cosine.clamp(0.0, 1.0), 3f64.sqrt() * gamma.clamp(0.0, 1.0));
+    let of_diffusion = (milne + m) / (1.0 + kappa * m) * (1.0 + kappa) / (milne + 1.0);
+    h / h_normal / of_diffusion
 }
 
 /// Returns the integral of `f`(u) e^(-x u) over u in [0, 1].
@@ -207,11 +211,15 @@ fn gradual(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
 }
 
+fn clamped_milne(milne: f64) -> f64 {
+    milne.clamp(LENGTHS.0, LENGTHS.1)
+}
+
 /// Integrates the source with Green's function. With a zero at the distance z outside of the surface it is
 /// e^(-κ max) (sinh(κ min) / κ + z cosh(κ min)) / (1 + κ z) of the two depths.
-pub fn fluence(depth: f64, cosine_light: f64, gamma: f64) -> f64 {
+pub fn fluence(depth: f64, cosine_light: f64, gamma: f64, milne: f64) -> f64 {
     let (t, c, g) = (depth.clamp(0.0, 1e6), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
-    let (z, kappa) = (milne_length(), 3f64.sqrt() * g);
+    let (z, kappa) = (clamped_milne(milne), 3f64.sqrt() * g);
     let product = kappa * c;
     if t * kappa.min(c.recip()) > 80.0 {
         return 0.0;
@@ -226,63 +234,93 @@ pub fn fluence(depth: f64, cosine_light: f64, gamma: f64) -> f64 {
 }
 
 /// Returns the same in closed form, for quadratures; the arguments are not clamped.
-pub(crate) fn emission(t: f64, c: f64, g: f64) -> f64 {
-    let (z, kappa) = (milne_length(), 3f64.sqrt() * g);
+pub(crate) fn emission(t: f64, c: f64, g: f64, z: f64) -> f64 {
+    let kappa = 3f64.sqrt() * g;
     let surface = z / (1.0 + kappa * z) * (-kappa * t).exp();
     let rise = t * (-(kappa * t).min(t / c)).exp() * gradual((t / c - kappa * t).abs());
     3.0 * (1.0 - g) * (1.0 + g) * c / (1.0 + kappa * c) * (surface + rise)
 }
 
 /// Returns [`fluence`]: the naive form is the same function, computed badly.
-pub fn fluence_naive(depth: f64, cosine_light: f64, gamma: f64) -> f64 {
-    fluence(depth, cosine_light, gamma)
+pub fn fluence_naive(depth: f64, cosine_light: f64, gamma: f64, milne: f64) -> f64 {
+    fluence(depth, cosine_light, gamma, milne)
 }
 
 /// Integrates the fluence along the ray.
-pub fn tail(depth: f64, cosine_eye: f64, cosine_light: f64, gamma: f64) -> f64 {
-    let (t, g) = (depth.clamp(0.0, 1e6), gamma.clamp(0.0, 1.0));
+pub fn tail(depth: f64, cosine_eye: f64, cosine_light: f64, gamma: f64, milne: f64) -> f64 {
+    let (t, g, z) = (depth.clamp(0.0, 1e6), gamma.clamp(0.0, 1.0), clamped_milne(milne));
     let (m, c) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light));
     if t / m > 700.0 {
         return 0.0;
     }
-    (-t / m).exp() * graded(END, c / m, |v| emission(t + m * v, c, g) * (-v).exp())
+    (-t / m).exp() * graded(END, c / m, |v| emission(t + m * v, c, g, z) * (-v).exp())
 }
 
-/// Integrates what lies above the straight lines, and adds the exact law less diffusion's.
-pub fn local(cosine_eye: f64, cosine_light: f64, h_eye: f64, h_light: f64, gamma: f64, depth: f64, gap: f64) -> f64 {
-    let (m, c, g) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
-    let (node, gap, z) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6), milne_length());
-    let of = |t: f64| emission(t, c, g);
-    let (first, second, scale) = (of(node), of(node + gap), c / m);
-    let above = graded(f64::min(node / m, END), scale, |v| {
-        let t = m * v;
-        (of(t) - first * (t + z) / (node + z)) * (-v).exp()
-    });
-    let below = if gap > 0.0 && node / m < END {
-        let bubble = graded(f64::min(gap / m, END), scale, |v| {
-            let t = m * v;
-            (of(node + t) - first - (second - first) * t / gap) * (-v).exp()
-        });
-        (-node / m).exp() * bubble
+/// What a grid with nodes at two depths shows of a fluence in a half space, and what of it an eye sees:
+/// straight lines between the nodes and up to `surface`, the fluence itself below.
+fn shown(m: f64, (node, gap): (f64, f64), surface: f64, scale: f64, of: impl Fn(f64) -> f64) -> f64 {
+    let (first, second) = (of(node), of(node + gap));
+    let line = |from: f64, to: f64, length: f64| {
+        graded(f64::min(length / m, END), 1.0, |v| (from + (to - from) * m * v / length) * (-v).exp())
+    };
+    let above = if node > 0.0 { line(surface, first, node) } else { 0.0 };
+    if node / m >= END {
+        return above;
+    }
+    let below = if gap > 0.0 { line(first, second, gap) } else { 0.0 };
+    let rest = if gap / m < END {
+        (-gap / m).exp() * graded(END, scale, |v| of(node + gap + m * v) * (-v).exp())
     } else {
         0.0
     };
-    let exact = c / (m + c) * (h_eye.clamp(1.0, 3.0) * h_light.clamp(1.0, 3.0) - 1.0);
-    let law = exact - graded(END, scale, |v| of(m * v) * (-v).exp());
-    (1.0 - g) * (1.0 + g) / (4.0 * PI) * (above + below + law)
+    above + (-node / m).exp() * (below + rest)
+}
+
+/// Integrates what the grid shows along the ray.
+#[expect(clippy::too_many_arguments, reason = "the shader's")]
+pub fn local(
+    cosine_eye: f64,
+    cosine_light: f64,
+    law: f64,
+    gamma: f64,
+    milne: f64,
+    depth: f64,
+    gap: f64,
+    angle: f64,
+) -> f64 {
+    let (m, c, g) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
+    let (node, gap, z) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6), clamped_milne(milne));
+    let of = |t: f64| emission(t, c, g, z);
+    let shown = shown(m, (node, gap), of(node) * z / (node + z), c / m, of);
+    let albedo = (1.0 - g) * (1.0 + g) / (4.0 * PI);
+    law.clamp(0.0, 4.0) - albedo * c / (m + c) - albedo * angle.clamp(0.0, 1.25) * shown
 }
 
 /// Returns [`local`]: the naive form is the same function, computed badly.
+#[expect(clippy::too_many_arguments, reason = "the shader's")]
 pub fn local_naive(
     cosine_eye: f64,
     cosine_light: f64,
-    h_eye: f64,
-    h_light: f64,
+    law: f64,
     gamma: f64,
+    milne: f64,
     depth: f64,
     gap: f64,
+    angle: f64,
 ) -> f64 {
-    local(cosine_eye, cosine_light, h_eye, h_light, gamma, depth, gap)
+    local(cosine_eye, cosine_light, law, gamma, milne, depth, gap, angle)
+}
+
+/// Integrates what the grid shows along the ray. The profile between surface and node is the straight line
+/// through the node whose extrapolation is the fluence outside, 1.
+pub fn local_around(cosine_eye: f64, law: f64, gamma: f64, milne: f64, depth: f64, gap: f64, angle: f64) -> f64 {
+    let (m, g, z) = (clamped_cosine(cosine_eye), gamma.clamp(0.0, 1.0), clamped_milne(milne));
+    let (node, gap) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6));
+    let kappa = 3f64.sqrt() * g;
+    let of = |t: f64| (-kappa * t).exp() / (1.0 + kappa * z);
+    let surface = 1.0 + (of(node) - 1.0) * z / (node + z);
+    let seen = angle.clamp(0.0, 1.25) * shown(m, (node, gap), surface, 1.0, of);
+    law.clamp(0.0, 1.0) - (1.0 - g) * (1.0 + g) * seen
 }
 
 /// Multiplies the distances from the opposite corner.
@@ -291,6 +329,19 @@ pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
     let along = |(axis, at): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - at } else { at };
     let trilinear: f64 = inside.into_iter().enumerate().map(along).product();
     volume * trilinear + volume * f64::from(LEAST_WEIGHT)
+}
+
+/// Compares the quotient's numerator with both limits, multiplied by the variance.
+pub fn slope(missing: f64, variance: f64, above: f64, below: f64) -> f64 {
+    let variance = variance.max(f64::from(LEAST_VARIANCE));
+    let [above, below] = [above, below].map(|distance| distance.max(f64::from(LEAST_STEP)));
+    if missing * above > variance {
+        above.recip()
+    } else if -missing * below > variance {
+        -below.recip()
+    } else {
+        missing / variance
+    }
 }
 
 /// Adds the shares of load and inflow.

@@ -12,8 +12,11 @@ fn the_closed_form_of_the_fluence_is_green_s_function() {
     for gamma in GAMMAS {
         for cosine in [1e-3, 0.2, 0.6, 1.0] {
             for depth in [0.0, 1e-3, 0.3, 2.0, 20.0] {
-                let (green, closed) = (oracle::fluence(depth, cosine, gamma), oracle::emission(depth, cosine, gamma));
-                assert!((green - closed).abs() < 1e-8 * closed, "{depth} {cosine} {gamma}: {green} {closed}");
+                for milne in [0.5, 0.7104, 2.6, 20.0] {
+                    let green = oracle::fluence(depth, cosine, gamma, milne);
+                    let closed = oracle::emission(depth, cosine, gamma, milne);
+                    assert!((green - closed).abs() < 1e-8 * closed, "{depth} {cosine} {gamma}: {green} {closed}");
+                }
             }
         }
     }
@@ -24,9 +27,9 @@ fn the_fluence_solves_its_equation() {
     let step = 1e-3;
     for gamma in GAMMAS {
         for cosine in [0.2, 0.6, 1.0] {
-            let f = |depth: f64| oracle::emission(depth, cosine, gamma);
+            let milne = 1.7;
+            let f = |depth: f64| oracle::emission(depth, cosine, gamma, milne);
             let slope = (4.0 * f(step) - 3.0 * f(0.0) - f(2.0 * step)) / (2.0 * step);
-            let milne = f64::from(DIFFUSION_MILNE);
             assert!((f(0.0) - milne * slope).abs() < 1e-3, "Robin's condition: {gamma} {cosine}");
             let depth: f64 = 0.8;
             let bend = (f(depth + step) + f(depth - step) - 2.0 * f(depth)) / (step * step);
@@ -36,30 +39,59 @@ fn the_fluence_solves_its_equation() {
     }
 }
 
+/// What the eye sees of a fluence on a grid: straight lines from `surface` to a node and to the next, and
+/// fine segments of the fluence from there on.
+fn shown(eye: f32, (depth, gap): (f32, f32), surface: f32, of: impl Fn(f32) -> f32) -> f64 {
+    let (first, second) = (of(depth), of(depth + gap));
+    let mut shown = f64::from(segment(surface, first, depth / eye));
+    shown += f64::from((-depth / eye).exp() * segment(first, second, gap / eye));
+    let step = 0.01 * eye;
+    for index in 0..2000u16 {
+        let at = depth + gap + step * f32::from(index);
+        shown += f64::from((-at / eye).exp() * segment(of(at), of(at + step), step / eye));
+    }
+    shown
+}
+
 #[test]
 fn grid_and_local_part_make_the_exact_law() {
-    // Any values will do for H: the law is what they make of it.
-    let (h_eye, h_light) = (1.7f32, 2.1);
+    // Any values will do for the law and the angles' factor.
+    let (law, angle) = (0.3f32, 0.9);
     for gamma in [0.0f32, 0.1, 0.577_35, 0.9] {
         for (eye, light) in [(0.2f32, 1.0f32), (1.0, 0.2), (0.7, 0.6)] {
             for (depth, gap) in [(0.1f32, 0.5f32), (0.5, 1.0), (2.0, 0.25), (4.0, 8.0)] {
-                let (first, second) = (fluence(depth, light, gamma), fluence(depth + gap, light, gamma));
-                // Robin's profile, by its definition at the surface.
-                let surface = first * profile(0.0, depth, DIFFUSION_MILNE);
-                let mut shown = f64::from(segment(surface, first, depth / eye));
-                shown += f64::from((-depth / eye).exp() * segment(first, second, gap / eye));
-                // Fine segments of the solution from there on.
-                let step = 0.01 * eye;
-                for index in 0..2000u16 {
-                    let at = depth + gap + step * f32::from(index);
-                    let (start, end) = (fluence(at, light, gamma), fluence(at + step, light, gamma));
-                    shown += f64::from((-at / eye).exp() * segment(start, end, step / eye));
+                for milne in [DIFFUSION_MILNE, 2.6] {
+                    let of = |depth: f32| fluence(depth, light, gamma, milne);
+                    // Robin's profile, by its definition at the surface.
+                    let surface = of(depth) * profile(0.0, depth, milne);
+                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, of);
+                    let single = f64::from(light / (eye + light));
+                    let part = local(eye, light, law, gamma, milne, depth, gap, angle);
+                    let albedo = f64::from(1.0 - gamma * gamma);
+                    let whole = f64::from(part) + albedo / (4.0 * PI) * (single + shown);
+                    assert!((whole - f64::from(law)).abs() < 1e-5, "{gamma} {eye} {light} {depth} {gap}: {whole}");
                 }
-                let albedo = f64::from(1.0 - gamma * gamma);
-                let part = local(eye, light, h_eye, h_light, gamma, depth, gap);
-                let whole = f64::from(part) + albedo / (4.0 * PI) * shown;
-                let law = f64::from(light / (eye + light) * (h_eye * h_light - 1.0)) * albedo / (4.0 * PI);
-                assert!((whole - law).abs() < 1e-5, "{gamma} {eye} {light} {depth} {gap}: {whole} {law}");
+            }
+        }
+    }
+}
+
+#[test]
+fn grid_and_local_part_make_the_exact_law_under_light_from_all_around() {
+    let (law, angle) = (0.6f32, 0.9);
+    for gamma in [0.0f32, 0.1, 0.5, 0.9] {
+        for eye in [0.2f32, 0.7, 1.0] {
+            for (depth, gap) in [(0.1f32, 0.5f32), (0.5, 1.0), (2.0, 0.25), (4.0, 8.0)] {
+                for milne in [DIFFUSION_MILNE, 2.6] {
+                    let kappa = 3f32.sqrt() * gamma;
+                    let of = |depth: f32| (-kappa * depth).exp() / (1.0 + kappa * milne);
+                    let share = profile(0.0, depth, milne);
+                    let surface = share * of(depth) + 1.0 - share;
+                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, of);
+                    let part = local_around(eye, law, gamma, milne, depth, gap, angle);
+                    let whole = f64::from(part) + f64::from(1.0 - gamma * gamma) * shown;
+                    assert!((whole - f64::from(law)).abs() < 1e-5, "{gamma} {eye} {depth} {gap}: {whole}");
+                }
             }
         }
     }

@@ -53,6 +53,7 @@ pub fn unwrap(mesh: &Mesh, halo: f32) -> Mesh {
             unwrapped.positions.push(position);
             unwrapped.normals.push(mesh.normals[vertex as usize]);
             unwrapped.uvs.push(uv.as_vec2());
+            unwrapped.colors.extend(mesh.colors.get(vertex as usize));
         }
         place
     };

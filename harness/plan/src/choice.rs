@@ -4,7 +4,7 @@ use super::effect::Effect;
 use super::numbers::short;
 use super::quality::Technique;
 use super::thickness::Thickness;
-use crate::{Request, Rung};
+use crate::{Quality, Request, Rung};
 use lapidary_scene::{Object, Scene, Shape};
 
 /// A technique that the user forces for all scattering bodies, whatever their thickness.
@@ -94,8 +94,8 @@ fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Techn
         };
         return (technique, "asked for, whatever its thickness".to_owned());
     }
-    if scene.lights.is_empty() {
-        return (Technique::Cdrf, "no light but the environment, which goes no way through bodies".to_owned());
+    if scene.lights.is_empty() && request.quality == Quality::Fast {
+        return (Technique::Cdrf, "no light but the environment, which takes no path through bodies".to_owned());
     }
     let thickness = Thickness::of(object, medium);
     if thickness.thickness == 0.0 {

@@ -148,6 +148,7 @@ impl Case<'_> {
             Effect::Shadow => self.shadow(),
             Effect::ColoredShadow => self.colored_shadow(),
             Effect::Environment => self.environment(),
+            Effect::Dielectric => self.dielectric(),
             Effect::EnvironmentMap => self.environment_map(),
             Effect::Microfacet => self.microfacet(),
             Effect::Reflection => self.reflection(),
@@ -359,8 +360,11 @@ impl Case<'_> {
             Rung::OpticalPath(_) | Rung::Diffusion(_) if !is_the_rungs => {
                 off(format!("the rung {} follows light through the body", self.rung))
             }
-            Rung::OpticalPath(_) | Rung::Diffusion(_) if self.scene.lights.is_empty() => {
+            Rung::OpticalPath(_) if self.scene.lights.is_empty() => {
                 off("no light but the environment, which goes no way through bodies")
+            }
+            Rung::Diffusion(_) if self.scene.lights.is_empty() && self.request.without.has(Effect::Environment) => {
+                off("no light")
             }
             Rung::OpticalPath(_) | Rung::Diffusion(_) => {
                 let called = self.material.medium.as_ref().map(|Medium { scattering, absorption, .. }| {
@@ -497,6 +501,16 @@ impl Case<'_> {
             off("a clear surface sends nothing back diffusely")
         } else {
             on("the surface sends light from all around back")
+        }
+    }
+
+    fn dielectric(&self) -> Answer {
+        match self.rung {
+            Rung::Diffusion(_) if self.material.ior == 1.0 => off("ior 1: nothing reflects"),
+            Rung::Diffusion(_) => on(format!("ior {}", short(self.material.ior))),
+            Rung::OpticalPath(_) => off("a path's cost knows no boundary"),
+            Rung::Diffuse(_) if self.material.scatters() => off("part of the base colour"),
+            _ => off("nothing inside scatters"),
         }
     }
 

@@ -81,6 +81,8 @@ effects! {
     ColoredShadow = "colored_shadow", "EFFECT_COLORED_SHADOW";
     /// Diffuse light from all directions.
     Environment = "environment", "EFFECT_ENVIRONMENT";
+    /// Surface that refracts light and reflects it back inside.
+    Dielectric = "dielectric", "EFFECT_DIELECTRIC";
     /// Environment given as an image.
     EnvironmentMap = "environment_map", "EFFECT_ENVIRONMENT_MAP";
     /// Highlights of the lights on a rough surface.
@@ -123,8 +125,8 @@ pub struct Effects(u32);
 impl Effects {
     /// The empty set.
     pub const NONE: Self = Self(0);
-    /// The effects of light reflected at the surface of a scattering body.
-    pub const SHEEN: Self = Self::of(&[Effect::Microfacet, Effect::Reflection]);
+    /// The effects of a scattering body's surface that reflects light, from outside and from inside.
+    pub const SHEEN: Self = Self::of(&[Effect::Dielectric, Effect::Microfacet, Effect::Reflection]);
 
     /// Returns the set of the given effects.
     #[must_use]
@@ -186,7 +188,8 @@ mod tests {
     fn a_set_has_what_was_put_into_it() {
         let both = Effects::of(&[Effect::Spot]).and(Effects::SHEEN);
         for effect in Effect::ALL {
-            let expected = [Effect::Spot, Effect::Microfacet, Effect::Reflection].contains(&effect);
+            let sheen = [Effect::Dielectric, Effect::Microfacet, Effect::Reflection];
+            let expected = effect == Effect::Spot || sheen.contains(&effect);
             assert_eq!(both.has(effect), expected, "{effect}");
         }
     }

@@ -15,7 +15,7 @@ use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::stage::Stage;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
-use crate::frame::{Bound, Builder, Executor, Frame, PipelineId, PipelineSource};
+use crate::frame::{Bound, Buffer, Builder, Executor, Frame, PipelineId, PipelineSource};
 use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use cells::Cells;
@@ -37,22 +37,26 @@ pub(super) struct Matter {
     pub(super) extinction: Vec3,
     /// The root of 1 - albedo.
     pub(super) gamma: Vec3,
+    /// Index of refraction at the surface, relative to the medium outside.
+    pub(super) index: f32,
 }
 
 impl Matter {
-    fn of(material: &Material, grid: VoxelGrid) -> Self {
+    /// Returns a material's matter on a grid, behind a surface of this index.
+    fn of(material: &Material, grid: VoxelGrid, index: f32) -> Self {
         let Some(medium) = &material.medium else {
-            return Self { extinction: Vec3::splat(THINNEST), gamma: Vec3::ONE };
+            return Self { extinction: Vec3::splat(THINNEST), gamma: Vec3::ONE, index };
         };
         let extinction = medium.transport_extinction();
         // Where nothing scatters or absorbs, nothing is sent back either.
         let absorbed = Vec3::select(extinction.cmpgt(Vec3::ZERO), medium.absorption / extinction, Vec3::ONE);
-        Self { extinction: (extinction * grid.spacing).max(Vec3::splat(THINNEST)), gamma: absorbed.map(f32::sqrt) }
+        let extinction = (extinction * grid.spacing).max(Vec3::splat(THINNEST));
+        Self { extinction, gamma: absorbed.map(f32::sqrt), index }
     }
 
     /// Milne's length in voxel spacings where the density is 1.
     pub(super) fn milne(&self) -> Vec3 {
-        lapidary_diffusion::DIFFUSION_MILNE / self.extinction
+        lapidary_diffusion::milne(self.index) / self.extinction
     }
 }
 
@@ -81,6 +85,8 @@ pub(super) fn pass(
     source: &str,
 ) -> Result<ScenePass, RenderError> {
     let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, cells)?;
+    let largest = largest.max(lighting.largest_around());
+    let harmonics = lighting.has_environment().then(|| lighting.harmonics(builder));
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
     for (constants, objects) in part.variants(|drawn| drawn.decisions.constants()) {
@@ -94,7 +100,8 @@ pub(super) fn pass(
         })?;
         let mut shared = lighting.shared(builder, pipeline)?;
         shared.extend([(4, lit.views.into()), (5, lit.maps)]);
-        let add = Add { pipeline, constants: &constants, cells, lit: &lit, largest, settings: part.settings };
+        let add =
+            Add { pipeline, constants: &constants, cells, lit: &lit, largest, harmonics, settings: part.settings };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
             let (body, of_body) =
@@ -117,6 +124,8 @@ struct Add<'a> {
     lit: &'a Lit,
     /// Irradiance that counts as 1, for each channel.
     largest: Vec3,
+    /// The environment's harmonics; `None` if it is left out.
+    harmonics: Option<Buffer>,
     settings: &'a Settings,
 }
 
@@ -131,7 +140,8 @@ impl Add<'_> {
     ) -> Result<(Body, Option<BodyDiffusion>), RenderError> {
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.cells);
-        let matter = Matter::of(material, grid);
+        let index = if decisions.has(Effect::Dielectric) { material.ior } else { 1.0 };
+        let matter = Matter::of(material, grid, index);
         let shape = shapes.of(builder, name, drawn.object)?;
         let buffers = MeshBuffers::of(builder, shape, drawn.object)?;
         maps.add(builder, name, &buffers)?;
@@ -167,7 +177,8 @@ impl Add<'_> {
         let bits = Cells::matter(builder, grid);
         let densities = Densities::new(builder, grid, density, bits)?;
         let of_voxel = densities.as_ref().map(|densities| densities.buffer);
-        let cells = Cells::new(builder, grid, (shape, mesh), self.constants, (matter, material), (bits, of_voxel))?;
+        let of_body = cells::Body { matter, material, largest: self.largest, harmonics: self.harmonics };
+        let cells = Cells::new(builder, grid, (shape, mesh), self.constants, of_body, (bits, of_voxel))?;
         let levels = Levels::new(builder, grid, &cells, self.settings.diffusion)?;
         let source = Source::new(
             builder,
@@ -179,6 +190,7 @@ impl Add<'_> {
                 fine: cells.voxelizer.matter,
                 density: of_voxel,
                 right: levels.right(),
+                entering: cells.entering,
             },
             self.constants,
         )?;
@@ -191,8 +203,10 @@ fn record_of(grid: VoxelGrid, material: &Material, matter: Matter, largest: Vec3
     let record = Record::new("DiffusionBody").within("grid", |record| grid.fill(record));
     let record = record.with("extinction", matter.extinction).with("index", material.ior);
     let record = record.with("gamma", matter.gamma).with("alpha", material.roughness * material.roughness);
-    let h_normal = matter.gamma.map(|gamma| lapidary_half_space::h(1.0, gamma));
-    record.with("largest", largest).with("h_normal", h_normal)
+    let record = record.with("largest", largest).with("milne", lapidary_diffusion::milne(matter.index));
+    let record = record.with("h_normal", matter.gamma.map(|gamma| lapidary_half_space::h(1.0, gamma)));
+    let edge = lapidary_half_space::edge(matter.index);
+    record.with("edge", edge).with("gain", matter.gamma.map(|gamma| lapidary_half_space::gain(gamma, edge)))
 }
 
 impl Diffusions {

@@ -83,8 +83,22 @@ impl<'a> Lighting<'a> {
         self.around.get_or_init(|| around(self.settings))
     }
 
+    /// Whether an environment lights the bodies.
+    pub(super) fn has_environment(&self) -> bool {
+        !self.settings.without.has(Effect::Environment)
+    }
+
+    /// Returns a bound of the irradiance from all around, for each channel: what falls on no surface is
+    /// more.
+    pub(super) fn largest_around(&self) -> Vec3 {
+        if !self.has_environment() {
+            return Vec3::ZERO;
+        }
+        harmonics::largest_irradiance(self.around()).as_vec3()
+    }
+
     /// Returns the environment's diffuse light.
-    fn harmonics(&self, builder: &mut Builder<'_>) -> Buffer {
+    pub(super) fn harmonics(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.harmonics.get_or_init(|| {
             let coefficients: Vec<Vec4> =
                 self.around().iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();

@@ -6,11 +6,13 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 use thiserror::Error;
 
-use super::gltf::{COLORING, INSTANCING};
-use super::{Bounds, Camera, Copies, Density, Material, Mesh, Object, Place, Scene};
+use super::gltf::{COLORING, INSTANCING, TEXTURE_TRANSFORM};
+use super::{Bounds, Camera, Copies, Material, Object, Place, Scene};
 
 mod light;
 mod material;
+mod problem;
+mod texture;
 
 /// Reason why a scene cannot be written. In that case no bytes are produced.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -28,6 +30,14 @@ pub enum GlbError {
         object: String,
         /// Problem and how to fix it.
         problem: &'static str,
+    },
+    /// An image cannot be encoded.
+    #[error("an image of {width} x {height} texels cannot be encoded as PNG; scale it down")]
+    Image {
+        /// Texels in a row.
+        width: u32,
+        /// Number of rows.
+        height: u32,
     },
     /// A light violates the invariants of [`Light`](super::Light).
     #[error("light {light} cannot be written as glTF: {problem}")]
@@ -61,12 +71,13 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 /// attenuation as `KHR_materials_volume`, and dispersion as `KHR_materials_dispersion`. glTF has no
 /// Sellmeier equation: its name goes into `extras.lapidary.sellmeier`, together with an approximate
 /// dispersion for other programs. A medium, a `sigma0` and a solver go into `extras.lapidary`;
-/// other programs show the base colour. Lights are written as `KHR_lights_punctual`.
+/// other programs show the base colour. Lights are written as `KHR_lights_punctual`, images as
+/// embedded PNG, each once.
 ///
 /// The same scene always yields the same bytes. [`super::gltf::parse`] returns the same meshes
-/// (without [`Mesh::halo`]), materials and lights, and a camera with the same view up to rounding.
+/// (without [`Mesh::halo`](super::Mesh::halo)), materials and lights, and a camera with the same view up to rounding.
 /// A material with diffuse transmission and attenuation but no medium comes back with the medium
-/// that the loader derives.
+/// that the loader derives. Textures whose factor is 0 are left out.
 ///
 /// # Errors
 /// Returns a [`GlbError`] if a mesh or light is malformed or the file would exceed 4 GiB.
@@ -88,7 +99,12 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
     if let Some((light, problem)) = broken {
         return Err(GlbError::Light { light, problem });
     }
-    let json = document.json(scene).to_string();
+    let images = document.images()?;
+    let mut json = document.json(scene);
+    if !images.is_empty() {
+        json["images"] = images.into();
+    }
+    let json = json.to_string();
     container(json.as_bytes(), &document.binary)
 }
 
@@ -123,13 +139,14 @@ struct Document {
     materials: Vec<Value>,
     meshes: Vec<Value>,
     nodes: Vec<Value>,
+    textures: texture::Textures,
 }
 
 impl Document {
     fn add(&mut self, object: &Object) -> Result<(), GlbError> {
         let problem = |problem| GlbError::Object { object: object.name.clone(), problem };
         for mesh in [&object.mesh, object.shape()] {
-            problem_of(mesh, &object.material).map_or(Ok(()), |wrong| Err(problem(wrong)))?;
+            problem::of(mesh, &object.material).map_or(Ok(()), |wrong| Err(problem(wrong)))?;
         }
         let mesh = object.shape();
         // glTF has no invisible triangles.
@@ -142,6 +159,9 @@ impl Document {
         let mut attributes = json!({"POSITION": position, "NORMAL": normal});
         if !mesh.uvs.is_empty() {
             attributes["TEXCOORD_0"] = json!(self.vectors(mesh.uvs.iter().map(Vec2::to_array)));
+        }
+        if !mesh.colors.is_empty() {
+            attributes["COLOR_0"] = json!(self.vectors(mesh.colors.iter().map(Vec3::to_array)));
         }
         let indices = mesh.indices.iter().flat_map(|k| k.to_le_bytes());
         let indices = self.accessor(
@@ -166,7 +186,7 @@ impl Document {
                 "mode": 4,
             }],
         }));
-        self.materials.push(material::material(&material));
+        self.materials.push(material::material(&material, &mut self.textures));
         Ok(())
     }
 
@@ -197,19 +217,32 @@ impl Document {
     }
 
     /// Appends an accessor with its own buffer view and returns its index. All elements consist of
-    /// four-byte numbers, so every view is aligned.
+    /// four-byte numbers, and images follow them, so every view is aligned.
     fn accessor(&mut self, data: impl Iterator<Item = u8>, mut accessor: Value, target: u32) -> usize {
-        let start = self.binary.len();
-        self.binary.extend(data);
-        accessor["bufferView"] = json!(self.views.len());
-        self.views.push(json!({
-            "buffer": 0,
-            "byteOffset": start,
-            "byteLength": self.binary.len() - start,
-            "target": target,
-        }));
+        let view = self.view(data);
+        self.views[view]["target"] = json!(target);
+        accessor["bufferView"] = json!(view);
         self.accessors.push(accessor);
         self.accessors.len() - 1
+    }
+
+    /// Appends a buffer view and returns its index.
+    fn view(&mut self, data: impl Iterator<Item = u8>) -> usize {
+        let start = self.binary.len();
+        self.binary.extend(data);
+        self.views.push(json!({"buffer": 0, "byteOffset": start, "byteLength": self.binary.len() - start}));
+        self.views.len() - 1
+    }
+
+    /// Appends the images of all textures and returns their list.
+    fn images(&mut self) -> Result<Vec<Value>, GlbError> {
+        let images = self.textures.images().to_vec();
+        let written = images.iter().map(|texels| {
+            let (width, height) = (texels.width(), texels.height());
+            let png = texture::png(texels).ok_or(GlbError::Image { width, height })?;
+            Ok(json!({"bufferView": self.view(png.into_iter()), "mimeType": "image/png"}))
+        });
+        written.collect()
     }
 
     /// Names of the extensions that the materials and nodes use, sorted and without duplicates.
@@ -226,6 +259,9 @@ impl Document {
         let mut extensions_used = self.extensions_used();
         if !scene.lights.is_empty() {
             extensions_used.insert(light::EXTENSION);
+        }
+        if self.textures.is_transformed() {
+            extensions_used.insert(TEXTURE_TRANSFORM);
         }
         let mut written = json!({
             "asset": {"version": "2.0", "generator": "Lapidary"},
@@ -247,32 +283,8 @@ impl Document {
             let lights: Vec<Value> = scene.lights.iter().map(light::light).collect();
             written["extensions"] = json!({light::EXTENSION: {"lights": lights}});
         }
+        self.textures.write(&mut written);
         written
-    }
-}
-
-/// Returns the first problem that keeps an object from being written as glTF, or `None`.
-fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
-    let vertices = mesh.positions.len();
-    let in_range = |&index: &u32| (index as usize) < vertices;
-    if mesh.indices.is_empty() {
-        Some("it has no triangles; remove the object")
-    } else if !mesh.indices.len().is_multiple_of(3) {
-        Some("its number of indices is not a multiple of three; complete the last triangle")
-    } else if mesh.normals.len() != vertices {
-        Some("it has not one normal for each position; compute them again")
-    } else if !mesh.uvs.is_empty() && mesh.uvs.len() != vertices {
-        Some("it has neither one pair of texture coordinates for each position nor none; compute them again")
-    } else if !mesh.indices.iter().chain(&mesh.halo).all(in_range) {
-        Some("an index is past its last vertex; mend the triangles")
-    } else if !mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()) {
-        Some("a position or normal is not finite; mend or remove the vertex")
-    } else if !mesh.uvs.iter().all(|uv| uv.is_finite()) {
-        Some("a texture coordinate is not finite; mend it")
-    } else if material.medium.as_ref().is_some_and(|medium| matches!(medium.density, Density::Grid(_))) {
-        Some("its density is a grid, which a file has no place for; make it uniform or veined")
-    } else {
-        material.problem()
     }
 }
 

@@ -6,11 +6,12 @@
 //! [`MAX_OBJECTS`] bound what a file can make the loader allocate, however small the file is: a few
 //! instances of a large mesh can need as much memory as a large file.
 //!
-//! The loader reads triangles (also strips and fans) with their first texture coordinates, node
-//! transforms and instances (`gltf/instances.rs`), the first perspective camera, directional, point
-//! and spot lights (`gltf/light_node.rs`), and materials (`gltf/material.rs`). Anything else in the
-//! file is listed in [`Scene::lacking`] (`gltf/survey.rs`): textures, skins, morph targets,
-//! animations and more. Bodies are shown at rest, with material factors only.
+//! The loader reads triangles (also strips and fans) with their first texture coordinates and
+//! colours, node transforms and instances (`gltf/instances.rs`), the first perspective camera,
+//! directional, point and spot lights (`gltf/light_node.rs`), materials (`gltf/material.rs`) and some
+//! of their textures (`gltf/texture.rs`). Anything else in the file is listed in [`Scene::lacking`]
+//! (`gltf/survey.rs`): other textures, skins, morph targets, animations and more, and with it what is
+//! loaded but not drawn yet (`gltf/not_drawn.rs`). Bodies are shown at rest.
 
 use std::path::Path;
 
@@ -24,6 +25,7 @@ mod budget;
 mod buffers;
 mod camera_node;
 mod container;
+mod decode;
 mod error;
 mod extension;
 mod extras;
@@ -35,23 +37,31 @@ mod light_node;
 mod material;
 mod medium;
 mod nodes;
+mod not_drawn;
 mod primitive;
 mod requirement;
 mod survey;
+mod texture;
+mod uri;
 
 pub use error::GltfError;
 pub(super) use instances::{COLORING, NAME as INSTANCING};
+pub(super) use texture::TRANSFORM as TEXTURE_TRANSFORM;
 
 /// Maximum size of a file, and of all buffers of a file together: 1 GiB.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// Maximum number of triangles in a scene, counting every instance: 2²⁴; three times as many
 /// vertices are allowed. Such a scene takes 0.4 GB with shared vertices, 1.4 GB without, and 1.8 GB
-/// if unshared vertices have texture coordinates.
+/// if unshared vertices have texture coordinates; colours as well would exceed
+/// [`MAX_SCENE_BYTES`].
 pub const MAX_TRIANGLES: u64 = 1 << 24;
 
-/// Maximum memory for all bodies of a scene, counting every instance: 2 GiB. The file and its
-/// buffers come on top.
+/// Maximum memory for all decoded images of a scene: 512 MiB, two of 8192 x 8192 texels.
+pub const MAX_IMAGE_BYTES: u64 = 1 << 29;
+
+/// Maximum memory for all bodies of a scene, counting every instance: 2 GiB. The file, its
+/// buffers and its images come on top.
 pub const MAX_SCENE_BYTES: u64 = 1 << 31;
 
 /// Maximum number of bodies in a scene: 2¹⁶. The `EXT_mesh_gpu_instancing` instances of a primitive
@@ -64,7 +74,7 @@ pub const MAX_OBJECTS: u64 = 1 << 16;
 pub const MAX_COORDINATE: f32 = 1e9;
 
 /// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 7] = [
+pub const KNOWN_EXTENSIONS: [&str; 8] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
@@ -72,13 +82,14 @@ pub const KNOWN_EXTENSIONS: [&str; 7] = [
     "KHR_materials_diffuse_transmission",
     "KHR_lights_punctual",
     "EXT_mesh_gpu_instancing",
+    "KHR_texture_transform",
 ];
 
 /// Default camera for a scene without one: vertical field of view in radians, and direction towards
 /// the eye.
 const DEFAULT_VIEW: (f32, Vec3) = (0.47, Vec3::new(0.35, 0.45, 1.0));
 
-/// Loads a .glb or .gltf file. External buffers are resolved relative to it.
+/// Loads a .glb or .gltf file. External buffers and images are resolved relative to it.
 ///
 /// # Errors
 /// [`SceneError::File`] with the path and the problem.
@@ -86,7 +97,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let in_file = |problem| SceneError::File { path: path.to_owned(), problem };
     let base = path.parent().unwrap_or(Path::new(""));
     let mut scene =
-        buffers::read_file(path, MAX_FILE_BYTES).and_then(|bytes| parse_scene(&bytes, Some(base))).map_err(in_file)?;
+        uri::read_file(path, MAX_FILE_BYTES).and_then(|bytes| parse_scene(&bytes, Some(base))).map_err(in_file)?;
     if scene.name.is_empty() {
         let stem = path.file_stem().unwrap_or_default();
         scene.name = stem.to_string_lossy().into_owned();
@@ -94,8 +105,8 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// Parses the bytes of a .glb or .gltf file. External buffers are read from the folder `base`; if
-/// it is `None`, an external buffer is an error. A scene without a name is called `scene`.
+/// Parses the bytes of a .glb or .gltf file. External buffers and images are read from the
+/// folder `base`; if it is `None`, an external one is an error. A scene without a name is called `scene`.
 ///
 /// # Errors
 /// [`SceneError::Gltf`] with the problem.
@@ -116,7 +127,8 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
     let shown = nodes::Shown::of(&root)?;
 
     let mut budget = budget::Budget::new();
-    let mut materials = material::Materials::new(&root);
+    let textures = texture::Textures::new(&root, json, &buffers, base);
+    let mut materials = material::Materials::new(&root, textures);
     let mut objects: Vec<Object> = Vec::new();
     for node in &shown.nodes {
         primitive::add_objects(&root, &buffers, node, &mut materials, &mut budget, &mut objects)?;

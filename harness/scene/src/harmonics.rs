@@ -55,6 +55,24 @@ pub fn irradiance(coefficients: &[DVec3; COUNT], normal: DVec3) -> DVec3 {
     sum.max(DVec3::ZERO)
 }
 
+/// Returns a bound of [`irradiance`] over all normals.
+///
+/// By the theorem of addition the squares of the harmonics of degree l add up to (2l + 1)/(4π) in every
+/// direction, so that by Cauchy and Schwarz a degree adds at most the root of that times the length of its
+/// coefficients.
+#[must_use]
+pub fn largest_irradiance(coefficients: &[DVec3; COUNT]) -> DVec3 {
+    let mut rest = &coefficients[..];
+    let mut sum = DVec3::ZERO;
+    for (weight, orders) in WEIGHTS {
+        let (of_degree, others) = rest.split_at(orders);
+        let squares: DVec3 = of_degree.iter().map(|coefficient| *coefficient * *coefficient).sum();
+        sum += weight.abs() * (squares * orders as f64 / (4.0 * PI)).map(f64::sqrt);
+        rest = others;
+    }
+    sum
+}
+
 /// Returns the weight of a clamped cosine for each harmonic.
 pub fn weights() -> impl Iterator<Item = f64> {
     WEIGHTS.into_iter().flat_map(|(weight, orders)| std::iter::repeat_n(weight, orders))
@@ -113,6 +131,18 @@ mod tests {
             let found = irradiance(&coefficients, normal);
             let expected = PI * (DVec3::ONE + normal / 3.0);
             assert!(found.abs_diff_eq(expected, 2e-3), "{normal}: {found}, not {expected}");
+        }
+    }
+
+    #[test]
+    fn no_irradiance_is_above_the_bound() {
+        let small = |direction: DVec3| DVec3::splat(100.0 * f64::from(u8::from(direction.y > 0.99)));
+        for (environment, near) in [(map(|_| DVec3::ONE), 1.001), (map(small), 1.7), (Environment::Studio, 2.0)] {
+            let coefficients = project(&environment);
+            let most = NORMALS.iter().chain(&[DVec3::Y]).map(|normal| irradiance(&coefficients, *normal));
+            let most = most.fold(DVec3::ZERO, DVec3::max);
+            let bound = largest_irradiance(&coefficients);
+            assert!(most.cmple(bound * 1.000_1).all() && bound.cmple(near * most).all(), "{most} {bound}");
         }
     }
 

@@ -45,6 +45,7 @@ pub mod polyhedron;
 pub mod solver;
 pub mod spectrum;
 pub mod surfaces;
+pub mod texture;
 pub mod view;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
@@ -61,6 +62,7 @@ pub use mesh::Mesh;
 pub use mesh_diagnosis::MeshDiagnosis;
 pub use normals::Averaging;
 pub use solver::Solver;
+pub use texture::{Encoding, Texels, Texture, TextureSlot, TextureTransform, Wrap};
 pub use view::clip_from_world;
 
 /// Returns what is wrong with a path whose `metadata` is not that of a regular file, as the end of a

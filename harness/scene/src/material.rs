@@ -1,10 +1,17 @@
 //! Materials: those of glTF, with a few extensions.
 
-use super::{Medium, Solver};
+use super::{Medium, Solver, Texture, TextureSlot};
 use glam::Vec3;
 use lapidary_dispersion::{channels, oracle as dispersion};
 
+mod mineral;
+
+pub use mineral::Mineral;
+
 /// Optical properties of a body.
+///
+/// Textures multiply their factors. They are looked up by the body's own texture coordinates,
+/// [`Mesh::uvs`](crate::Mesh::uvs): a material with textures belongs on a mesh that has some.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name of the material, or `default`.
@@ -12,6 +19,13 @@ pub struct Material {
     /// Base colour factor, linear RGB, each 0 to 1. Light that crosses the surface is multiplied by
     /// it.
     pub base_color: Vec3,
+    /// Factor of the base colour, in red, green and blue.
+    pub base_color_texture: Option<Texture>,
+    /// Direction of the surface normal in tangent space, 2 · RGB - 1: x along u, y against v (which
+    /// is down), z out of the surface.
+    pub normal_texture: Option<Texture>,
+    /// Factor of the normal texture's x and y, finite; without a texture it has no effect.
+    pub normal_scale: f32,
     /// Refractive index relative to air at the helium d line, 587.6 nm, from 1 to
     /// [`LARGEST_INDEX`](Self::LARGEST_INDEX).
     pub ior: f32,
@@ -26,14 +40,20 @@ pub struct Material {
     /// Fraction of the light at the surface that passes straight through it, 0 (opaque) to 1
     /// (clear): `KHR_materials_transmission`.
     pub transmission: f32,
+    /// Factor of the transmission, in red.
+    pub transmission_texture: Option<Texture>,
     /// Fraction that passes through it diffusely, 0 to 1: `KHR_materials_diffuse_transmission`.
     pub diffuse_transmission: f32,
+    /// Factor of the diffuse transmission, in alpha.
+    pub diffuse_transmission_texture: Option<Texture>,
     /// Colour that the diffusely transmitted light is multiplied by, linear RGB, each 0 to 1.
     pub diffuse_transmission_color: Vec3,
     /// Thickness of the body beneath the surface, in world units, at least 0:
     /// `KHR_materials_volume`. 0 is a thin wall, without an interior that would refract or absorb
     /// light.
     pub thickness: f32,
+    /// Factor of the thickness, in green.
+    pub thickness_texture: Option<Texture>,
     /// Roughness of the surface, 0 (a mirror) to 1, as in glTF: its square is the width of the
     /// distribution of microfacet slopes.
     pub roughness: f32,
@@ -63,81 +83,6 @@ pub enum Dispersion {
     Sellmeier(Mineral),
 }
 
-/// A material with a known Sellmeier equation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mineral {
-    /// Diamond (Peter 1923).
-    Diamond,
-    /// Corundum's ordinary ray: ruby and sapphire (Malitson).
-    Corundum,
-    /// Quartz's ordinary ray (Ghosh).
-    Quartz,
-    /// Schott's crown glass N-BK7.
-    CrownGlass,
-    /// Cubic zirconia (Wood).
-    CubicZirconia,
-}
-
-impl Mineral {
-    /// All minerals, each once.
-    pub const ALL: [Self; 5] = [Self::Diamond, Self::Corundum, Self::Quartz, Self::CrownGlass, Self::CubicZirconia];
-
-    /// Returns its name in `extras.lapidary.sellmeier` of a glTF file.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Diamond => "diamond",
-            Self::Corundum => "corundum",
-            Self::Quartz => "quartz",
-            Self::CrownGlass => "crown_glass",
-            Self::CubicZirconia => "cubic_zirconia",
-        }
-    }
-
-    /// Returns the mineral with this [`Mineral::name`], or `None` if there is none.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|mineral| mineral.name() == name)
-    }
-
-    /// Returns the refractive index from its Sellmeier equation at the helium d line, 587.5618 nm,
-    /// to five decimals.
-    #[must_use]
-    pub const fn index(self) -> f32 {
-        match self {
-            Self::Diamond => 2.41749,
-            Self::Corundum => 1.76817,
-            Self::Quartz => 1.54428,
-            Self::CrownGlass => 1.51680,
-            Self::CubicZirconia => 2.15877,
-        }
-    }
-
-    /// Returns its Sellmeier equation.
-    const fn sellmeier(self) -> dispersion::DispersionSellmeier {
-        match self {
-            Self::Diamond => dispersion::DISPERSION_DIAMOND,
-            Self::Corundum => dispersion::DISPERSION_CORUNDUM,
-            Self::Quartz => dispersion::DISPERSION_QUARTZ,
-            Self::CrownGlass => dispersion::DISPERSION_CROWN_GLASS,
-            Self::CubicZirconia => dispersion::DISPERSION_CUBIC_ZIRCONIA,
-        }
-    }
-
-    /// Returns its Abbe number V_d = (n_d - 1)/(n_F - n_C) from the same equation: the only part of
-    /// the equation that reaches a reader that knows just `KHR_materials_dispersion`.
-    #[must_use]
-    pub const fn abbe_number(self) -> f32 {
-        match self {
-            Self::Diamond => 55.3,
-            Self::Corundum => 72.3,
-            Self::Quartz => 69.7,
-            Self::CrownGlass => 64.2,
-            Self::CubicZirconia => 33.5,
-        }
-    }
-}
-
 impl Material {
     /// Returns glTF's default material: white, opaque, refractive index 1.5, no dispersion or
     /// absorption.
@@ -146,14 +91,20 @@ impl Material {
         Self {
             name: "default".to_owned(),
             base_color: Vec3::ONE,
+            base_color_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
             ior: 1.5,
             dispersion: Dispersion::None,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
             transmission: 0.0,
+            transmission_texture: None,
             diffuse_transmission: 0.0,
+            diffuse_transmission_texture: None,
             diffuse_transmission_color: Vec3::ONE,
             thickness: 0.0,
+            thickness_texture: None,
             roughness: 1.0,
             double_sided: false,
             sigma0: None,
@@ -202,13 +153,56 @@ impl Material {
             Some("its material's sigma0 is not finite and at least 0; mend it")
         } else if self.solver.is_some() && !self.scatters() {
             Some("its material has a solver, but does not scatter light; remove the solver")
+        } else if !self.normal_scale.is_finite() {
+            Some("its material's normal scale is not finite; mend it")
         } else {
-            self.medium.as_ref().and_then(Medium::problem)
+            let medium = self.medium.as_ref().and_then(Medium::problem);
+            medium.or_else(|| self.textures().find_map(|(_, texture)| texture.problem()))
         }
     }
 }
 
 impl Material {
+    /// Returns the texture in a slot.
+    #[must_use]
+    pub fn texture(&self, slot: TextureSlot) -> Option<&Texture> {
+        match slot {
+            TextureSlot::BaseColor => self.base_color_texture.as_ref(),
+            TextureSlot::Normal => self.normal_texture.as_ref(),
+            TextureSlot::Thickness => self.thickness_texture.as_ref(),
+            TextureSlot::Transmission => self.transmission_texture.as_ref(),
+            TextureSlot::DiffuseTransmission => self.diffuse_transmission_texture.as_ref(),
+        }
+    }
+
+    /// Returns the place of the texture in a slot.
+    pub fn texture_mut(&mut self, slot: TextureSlot) -> &mut Option<Texture> {
+        match slot {
+            TextureSlot::BaseColor => &mut self.base_color_texture,
+            TextureSlot::Normal => &mut self.normal_texture,
+            TextureSlot::Thickness => &mut self.thickness_texture,
+            TextureSlot::Transmission => &mut self.transmission_texture,
+            TextureSlot::DiffuseTransmission => &mut self.diffuse_transmission_texture,
+        }
+    }
+
+    /// Returns the slots that have a texture, with their textures.
+    pub fn textures(&self) -> impl Iterator<Item = (TextureSlot, &Texture)> {
+        TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
+    }
+
+    /// Whether the factor of a slot is other than 0, so that a texture there has an effect.
+    #[must_use]
+    pub fn calls_for(&self, slot: TextureSlot) -> bool {
+        match slot {
+            TextureSlot::BaseColor => self.base_color != Vec3::ZERO,
+            TextureSlot::Normal => self.normal_scale != 0.0,
+            TextureSlot::Thickness => self.thickness > 0.0,
+            TextureSlot::Transmission => self.transmission > 0.0,
+            TextureSlot::DiffuseTransmission => self.diffuse_transmission > 0.0,
+        }
+    }
+
     /// Whether the inside scatters light, as given by `sigma0` or by a medium.
     #[must_use]
     pub fn scatters(&self) -> bool {

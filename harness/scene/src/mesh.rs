@@ -9,7 +9,7 @@ use super::normals::{Averaging, Cofactors, shared_normals};
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
 ///
 /// The loader and the cuts of this crate always give consistent meshes: `normals` is as long as
-/// `positions`, `uvs` is as long or empty, every normal has unit length, the length of `indices` is
+/// `positions`, `uvs` and `colors` are as long or empty, every normal has unit length, the length of `indices` is
 /// a multiple of three, and every index is below `positions.len()`. Triangles wind
 /// counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,6 +20,9 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates for each position, v down as in glTF; empty if there are none.
     pub uvs: Vec<Vec2>,
+    /// Linear RGB for each position, 0 to 1, by which the material's base colour is multiplied
+    /// (`COLOR_0` of glTF); empty if there are none.
+    pub colors: Vec<Vec3>,
     /// Three indices into `positions` for each triangle.
     pub indices: Vec<u32>,
     /// Three indices into `positions` for each triangle that exists only in texture space: a second
@@ -34,7 +37,7 @@ impl Mesh {
     #[must_use]
     pub fn with_shared_normals(positions: Vec<Vec3>, indices: Vec<u32>, averaging: Averaging) -> Self {
         let normals = shared_normals(&positions, &indices, averaging);
-        Self { positions, normals, uvs: Vec::new(), indices, halo: Vec::new() }
+        Self { positions, normals, indices, ..Self::default() }
     }
 
     /// Returns the mesh rotated by `rotation`, of unit length, and then moved by `translation`.
@@ -45,9 +48,7 @@ impl Mesh {
         Self {
             positions: self.positions.iter().map(position).collect(),
             normals: self.normals.iter().map(normal).collect(),
-            uvs: self.uvs.clone(),
-            indices: self.indices.clone(),
-            halo: self.halo.clone(),
+            ..self.clone()
         }
     }
 
@@ -90,6 +91,7 @@ impl Mesh {
             positions: filtered(&self.positions, &kept),
             normals: filtered(&self.normals, &kept),
             uvs: filtered(&self.uvs, &kept),
+            colors: filtered(&self.colors, &kept),
             indices: self.indices.iter().map(|&vertex| places[vertex as usize]).collect(),
             halo: Vec::new(),
         }
@@ -97,13 +99,18 @@ impl Mesh {
 
     /// Adds the triangles of `other`, so that one draw call shows both. No vertex becomes shared:
     /// each body keeps the normals that it had alone. Together they may have 2³² vertices. Texture
-    /// coordinates are kept if both have them.
+    /// coordinates are kept if both have them; colours if one has them, the other is then white.
     pub fn append(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
         if self.uvs.len() == self.positions.len() && other.uvs.len() == other.positions.len() {
             self.uvs.extend(&other.uvs);
         } else {
             self.uvs.clear();
+        }
+        if !self.colors.is_empty() || !other.colors.is_empty() {
+            self.colors.resize(self.positions.len(), Vec3::ONE);
+            self.colors.extend(&other.colors);
+            self.colors.resize(self.positions.len() + other.positions.len(), Vec3::ONE);
         }
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
@@ -166,7 +173,7 @@ impl Mesh {
     /// Returns the size of the lists in bytes.
     #[must_use]
     pub fn byte_size(&self) -> u64 {
-        let vectors = self.positions.len() + self.normals.len();
+        let vectors = self.positions.len() + self.normals.len() + self.colors.len();
         let uvs = self.uvs.len() * size_of::<Vec2>();
         (vectors * size_of::<Vec3>() + uvs + (self.indices.len() + self.halo.len()) * size_of::<u32>()) as u64
     }

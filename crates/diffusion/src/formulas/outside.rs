@@ -28,30 +28,38 @@ pub(super) fn promises() -> Vec<Promise> {
         finite(
             "diffusion_angle",
             "finite for magnitudes up to 1e9, if h_normal is at least 1 and milne at least 0.01",
-            |draws| (draws.signed(-126, 28), draws.signed(-126, 28), draws.magnitude(0, 28), draws.between(0.01, 1e9)),
+            |draws| {
+                let (cosine, h, h_normal) = (draws.signed(-126, 28), draws.signed(-126, 28), draws.magnitude(0, 28));
+                (cosine, h, h_normal, any_finite(draws), draws.between(0.01, 1e9))
+            },
         ),
         finite("diffusion_segment", "finite for start and end up to 1e18", |draws| {
             (large(draws), large(draws), any_finite(draws))
         }),
         accurate("diffusion_unscattered", NOTHING, |draws| (any_finite(draws), any_finite(draws), any_finite(draws))),
-        accurate("diffusion_fluence", NOTHING, |draws| (any_finite(draws), any_finite(draws), any_finite(draws))),
-        accurate("diffusion_tail", NOTHING, |draws| {
+        accurate("diffusion_fluence", NOTHING, |draws| {
             (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws))
         }),
+        accurate("diffusion_tail", NOTHING, |draws| {
+            (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws))
+        }),
         accurate("diffusion_local", NOTHING, |draws| {
-            (
-                any_finite(draws),
-                any_finite(draws),
-                any_finite(draws),
-                any_finite(draws),
-                any_finite(draws),
-                any_finite(draws),
-                any_finite(draws),
-            )
+            let [eye, light, law, gamma, milne, depth, gap, angle] = [(); 8].map(|()| any_finite(draws));
+            (eye, light, law, gamma, milne, depth, gap, angle)
+        }),
+        accurate("diffusion_local_around", NOTHING, |draws| {
+            let [eye, law, gamma, milne, depth, gap, angle] = [(); 7].map(|()| any_finite(draws));
+            (eye, law, gamma, milne, depth, gap, angle)
         }),
         finite("diffusion_weight", "finite for volumes of magnitudes up to 1e18", |draws| {
             (Vec3::new(any_finite(draws), any_finite(draws), any_finite(draws)), any_number(draws), large(draws))
         }),
+        holds(
+            "diffusion_slope",
+            "in [-100.01, 100.01] for any finite numbers",
+            |draws| (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws)),
+            |_, slope: f32| that(slope.abs() <= 100.01, || format!("slope {slope}")),
+        ),
         holds(
             "diffusion_relax",
             "0 if conductances and reaction are not positive",

@@ -1,12 +1,13 @@
 //! The recipe `diffusion_cells`: a body as cells, from voxels of half the spacing and from its mesh.
 
 use super::super::mesh_buffers::ShapeBuffers;
-use super::Matter;
+use super::{Effect, Matter};
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
+use glam::Vec3;
 use lapidary_scene::{Material, Mesh};
 
 const RECIPE: &str = "diffusion_cells";
@@ -27,10 +28,24 @@ pub(super) struct Cells {
     pub(super) faces: Buffer,
     /// Losses in each channel, and the filled volume: four f32 for each voxel.
     pub(super) reactions: Buffer,
+    /// What the light from all around adds to the right side: three f32 for each voxel; `None` if none
+    /// enters.
+    pub(super) entering: Option<Buffer>,
     large: Buffer,
     /// Buffers that only this recipe reads.
     own: Vec<Buffer>,
     dispatches: Vec<Dispatch>,
+}
+
+/// What a body is made of, and the light around it.
+#[derive(Clone, Copy)]
+pub(super) struct Body<'a> {
+    pub(super) matter: Matter,
+    pub(super) material: &'a Material,
+    /// Irradiance that counts as 1, for each channel.
+    pub(super) largest: Vec3,
+    /// The environment's harmonics; `None` if it is left out.
+    pub(super) harmonics: Option<Buffer>,
 }
 
 impl Cells {
@@ -46,7 +61,7 @@ impl Cells {
         grid: VoxelGrid,
         (shape, mesh): (&Mesh, &ShapeBuffers),
         constants: &[(&str, f64)],
-        (matter, material): (Matter, &Material),
+        Body { matter, material, largest, harmonics }: Body<'_>,
         (bits, density): (Buffer, Option<Buffer>),
     ) -> Result<Self, ShaderError> {
         let fine = VoxelGrid { cells: 2 * grid.cells, spacing: 0.5 * grid.spacing, ..grid };
@@ -65,28 +80,36 @@ impl Cells {
         let nodes = storage("nodes", 4 * voxels);
         let faces = storage("conductances", 12 * voxels);
         let reactions = storage("losses", 16 * voxels);
-        let absorption = material.medium.as_ref().map_or(glam::Vec3::ZERO, |medium| {
+        let name = Effect::Environment.override_name();
+        let is_lit = constants.iter().any(|(of, value)| *of == name && *value != 0.0);
+        let harmonics = harmonics.filter(|_| is_lit);
+        let entering = harmonics.map(|_| storage("light that enters", 12 * voxels));
+        let absorption = material.medium.as_ref().map_or(Vec3::ZERO, |medium| {
             let absorbed = 3.0 * (grid.spacing * medium.absorption) * (grid.spacing * medium.transport_extinction());
-            absorbed.min(glam::Vec3::splat(MOST_ABSORBED))
+            absorbed.min(Vec3::splat(MOST_ABSORBED))
         });
         let record = Record::new("DiffusionCells").within("grid", |record| grid.fill(record));
-        let record = builder.uniform("cells", record.with("milne", matter.milne()).with("absorption", absorption));
+        let record = record.with("milne", matter.milne()).with("absorption", absorption);
+        let record = record.with("largest", unit(largest)).with("outside", 4.0 * matter.index * matter.index);
+        let record = builder.uniform("cells", record);
         let bound = [
-            record,
-            mesh.positions,
-            mesh.indices,
-            voxelizer.matter,
-            bits,
-            filled,
-            areas,
-            depths,
-            large,
-            nodes,
-            faces,
-            reactions,
+            (0, record),
+            (1, mesh.positions),
+            (2, mesh.indices),
+            (4, bits),
+            (5, filled),
+            (6, areas),
+            (7, depths),
+            (8, large),
+            (9, nodes),
+            (10, faces),
+            (11, reactions),
+            (13, voxelizer.matter),
         ];
-        let mut resources: Vec<(u32, Bound)> = (0..).zip(bound.map(Bound::from)).collect();
-        resources.extend(density.map(|density| (12, density.into())));
+        let of_choice = [(3, harmonics), (12, density), (14, entering)];
+        let of_choice = of_choice.into_iter().filter_map(|(binding, buffer)| Some((binding, buffer?)));
+        let resources: Vec<(u32, Bound)> =
+            bound.into_iter().chain(of_choice).map(|(binding, buffer)| (binding, buffer.into())).collect();
         let words = grid.words_per_row() * grid.cells * grid.cells;
         let counts =
             [words.div_ceil(GROUP), (triangles as u32).div_ceil(GROUP), LARGE_GROUPS, (voxels as u32).div_ceil(GROUP)];
@@ -95,8 +118,8 @@ impl Cells {
             builder.dispatch(kernel, vec![group], Workgroups::Count([count, 1, 1]))
         };
         let dispatches = kernels.into_iter().zip(counts).map(dispatch).collect();
-        let own = vec![bits, filled, areas, depths, large];
-        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, large, own, dispatches })
+        let own = [bits, filled, areas, depths, large].into_iter().chain(entering).collect();
+        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, entering, large, own, dispatches })
     }
 
     /// Encodes the voxels, and which cells hold matter.
@@ -117,4 +140,9 @@ impl Cells {
         let shared = [self.nodes, self.faces, self.reactions];
         self.voxelizer.bytes(frame) + frame.bytes_of(shared) + frame.bytes_of(self.own.iter().copied())
     }
+}
+
+/// Returns the irradiance that counts as 1 so that shares of it are finite.
+pub(super) fn unit(largest: Vec3) -> Vec3 {
+    largest.max(Vec3::splat(f32::MIN_POSITIVE))
 }

@@ -2,6 +2,7 @@
 
 use super::super::light_maps::Lit;
 use super::Matter;
+use super::cells::unit;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
@@ -30,6 +31,8 @@ pub(super) struct Buffers {
     pub(super) density: Option<Buffer>,
     /// The right side of the equations.
     pub(super) right: Buffer,
+    /// What the light from all around adds to it; `None` if none enters.
+    pub(super) entering: Option<Buffer>,
 }
 
 impl Source {
@@ -50,14 +53,14 @@ impl Source {
         let loads = builder.buffer("loads", 12 * grid.count() as u64, Usage::STORAGE | Usage::COPY_DST);
         let record = Record::new("DiffusionSource").within("grid", |record| grid.fill(record));
         let record = record.with("extinction", matter.extinction).with("milne", matter.milne());
-        // Shares are relative to the largest irradiance, which must not be 0.
-        let record = record.with("gamma", matter.gamma).with("largest", largest.max(Vec3::splat(f32::MIN_POSITIVE)));
+        let record = record.with("gamma", matter.gamma).with("largest", unit(largest)).with("index", matter.index);
         let uniform = builder.uniform("source", record);
         let of_lights = [(0, uniform.into()), (2, lit.lights.into()), (4, lit.views.into()), (5, lit.maps)];
-        let Buffers { nodes, fine, density, right } = *buffers;
+        let Buffers { nodes, fine, density, right, entering } = *buffers;
         let mut of_body: Vec<(u32, Bound)> =
             vec![(0, loads.into()), (1, nodes.into()), (2, fine.into()), (4, right.into())];
         of_body.extend(density.map(|density| (3, density.into())));
+        of_body.extend(entering.map(|entering| (5, entering.into())));
         let [width, height, layers] = lit.size;
         let sizes = [[width.div_ceil(GROUP), height.div_ceil(GROUP), layers], [FINISHING, 1, 1]];
         let dispatch = |(kernel, size)| {

@@ -35,12 +35,12 @@ impl Lone {
         let object = Object::new("body", mesh, material);
         let mut builder = Builder::new(Some(gpu()));
         let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), cells);
-        let matter = Matter::of(&object.material, grid);
+        let matter = Matter::of(&object.material, grid, 1.0);
         let mesh = ShapeBuffers::of(&mut builder, &object).expect("buffers");
         let bits = Cells::matter(&mut builder, grid);
-        let of_body = (matter, &object.material);
-        let cells =
-            Cells::new(&mut builder, grid, (&object.mesh, &mesh), &[("EFFECT_SURFACE", 0.0)], of_body, (bits, None));
+        let of_body = cells::Body { matter, material: &object.material, largest: Vec3::ONE, harmonics: None };
+        let constants = [("EFFECT_SURFACE", 0.0), ("EFFECT_ENVIRONMENT", 0.0)];
+        let cells = Cells::new(&mut builder, grid, (&object.mesh, &mesh), &constants, of_body, (bits, None));
         let cells = cells.expect("the recipe");
         let levels = Levels::new(&mut builder, grid, &cells, options).expect("the recipe");
         cells.encode_voxels(&mut builder);

@@ -4,13 +4,22 @@ use glam::Vec3;
 use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
-use crate::{Density, Dispersion, Material};
+use super::texture::Textures;
+use crate::{Density, Dispersion, Material, TextureSlot};
 
-/// JSON of a material, with the extensions that it needs.
-pub(super) fn material(material: &Material) -> Value {
+/// JSON of a material, with the extensions that it needs. Its textures that have an effect are added
+/// to `textures`.
+pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
+    let mut reference = |slot: TextureSlot| {
+        let texture = material.texture(slot).filter(|_| material.calls_for(slot));
+        texture.map(|texture| (slot.name(), textures.reference(texture)))
+    };
     let mut extensions = json!({"KHR_materials_ior": {"ior": material.ior}});
     if material.transmission > 0.0 {
         extensions["KHR_materials_transmission"] = json!({"transmissionFactor": material.transmission});
+        if let Some((name, texture)) = reference(TextureSlot::Transmission) {
+            extensions["KHR_materials_transmission"][name] = texture;
+        }
     }
     let color = material.diffuse_transmission_color;
     if material.diffuse_transmission > 0.0 || color != Vec3::ONE {
@@ -18,11 +27,15 @@ pub(super) fn material(material: &Material) -> Value {
             "diffuseTransmissionFactor": material.diffuse_transmission,
             "diffuseTransmissionColorFactor": color.to_array(),
         });
+        if let Some((name, texture)) = reference(TextureSlot::DiffuseTransmission) {
+            extensions["KHR_materials_diffuse_transmission"][name] = texture;
+        }
     }
     // JSON has no infinity, so an infinite distance is omitted: that is glTF's default.
     let mut volume = Map::new();
     if material.thickness > 0.0 {
         volume.insert("thicknessFactor".to_owned(), json!(material.thickness));
+        volume.extend(reference(TextureSlot::Thickness).map(|(name, texture)| (name.to_owned(), texture)));
     }
     if material.attenuation_color != Vec3::ONE {
         volume.insert("attenuationColor".to_owned(), json!(material.attenuation_color.to_array()));
@@ -80,6 +93,15 @@ pub(super) fn material(material: &Material) -> Value {
         },
         "extensions": extensions,
     });
+    if let Some((name, texture)) = reference(TextureSlot::BaseColor) {
+        written["pbrMetallicRoughness"][name] = texture;
+    }
+    if let Some((name, texture)) = reference(TextureSlot::Normal) {
+        written[name] = texture;
+        if material.normal_scale != 1.0 {
+            written[name]["scale"] = json!(material.normal_scale);
+        }
+    }
     if material.double_sided {
         written["doubleSided"] = json!(true);
     }

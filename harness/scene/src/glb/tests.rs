@@ -2,6 +2,8 @@ use super::*;
 use crate::{BUILT_IN, Density, DensityGrid, Dispersion, Light, Medium, Mineral, gltf};
 use lapidary_veins::VeinsPattern;
 
+mod textures;
+
 fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {
     let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     (&bytes[at + 4..at + 8], &bytes[at + 8..at + 8 + length])

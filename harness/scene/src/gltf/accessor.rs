@@ -4,7 +4,7 @@ use ::gltf::json::Root;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
 
-use super::buffers::Buffers;
+use super::buffers::{Buffers, range};
 use super::error::{GltfError, item};
 use super::requirement::{DRACO, MESHOPT, QUANTIZATION};
 
@@ -21,32 +21,39 @@ pub(super) struct Elements<'a> {
 /// Types that an accessor may have for one use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
-    type_: Type,
+    types: &'static [Type],
     components: &'static [ComponentType],
     description: &'static str,
 }
 
 /// Positions and normals.
 pub(super) const VECTORS: Kind =
-    Kind { type_: Type::Vec3, components: &[ComponentType::F32], description: "VEC3 of float" };
+    Kind { types: &[Type::Vec3], components: &[ComponentType::F32], description: "VEC3 of float" };
 
 /// Texture coordinates. Integers are normalised: the largest represents 1.
 pub(super) const TEXTURE_COORDINATES: Kind = Kind {
-    type_: Type::Vec2,
+    types: &[Type::Vec2],
     components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
     description: "VEC2 of float, or of normalised unsigned byte or short,",
 };
 
+/// Colours of vertices, with or without alpha. Integers are normalised: the largest represents 1.
+pub(super) const COLORS: Kind = Kind {
+    types: &[Type::Vec3, Type::Vec4],
+    components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
+    description: "VEC3 or VEC4 of float, or of normalised unsigned byte or short,",
+};
+
 /// Rotations of instances. Integers are normalised: the largest represents 1.
 pub(super) const ROTATIONS: Kind = Kind {
-    type_: Type::Vec4,
+    types: &[Type::Vec4],
     components: &[ComponentType::F32, ComponentType::I8, ComponentType::I16],
     description: "VEC4 of float, or of normalised byte or short,",
 };
 
 /// Indices.
 pub(super) const INDICES: Kind = Kind {
-    type_: Type::Scalar,
+    types: &[Type::Scalar],
     components: &[ComponentType::U8, ComponentType::U16, ComponentType::U32],
     description: "SCALAR of unsigned byte, short or int",
 };
@@ -71,10 +78,14 @@ impl<'a> Elements<'a> {
                 return Err(wrong("its componentType is not one of glTF's".to_owned()));
             }
         };
+        let type_ = match accessor.type_ {
+            Checked::Valid(type_) => Some(type_),
+            Checked::Invalid => None,
+        };
+        let type_ = type_.filter(|type_| kind.types.contains(type_) && kind.components.contains(&component));
         // Integers that represent fractions must be marked as normalised.
-        let stands_for_fraction = kind.type_ != Type::Scalar && component != ComponentType::F32;
-        let is_kind = accessor.type_ == Checked::Valid(kind.type_) && kind.components.contains(&component);
-        if !is_kind || (stands_for_fraction && !accessor.normalized) {
+        let must_be_normalised = |type_: &Type| *type_ != Type::Scalar && component != ComponentType::F32;
+        let Some(type_) = type_.filter(|type_| accessor.normalized || !must_be_normalised(type_)) else {
             let needs = format!("{user} needs {} there", kind.description);
             let is_quantised =
                 root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == QUANTIZATION);
@@ -86,7 +97,7 @@ impl<'a> Elements<'a> {
             } else {
                 format!("{needs}; export without quantisation or compression")
             }));
-        }
+        };
         if accessor.sparse.is_some() {
             return Err(wrong("sparse accessors are not read; export without them".to_owned()));
         }
@@ -104,20 +115,9 @@ impl<'a> Elements<'a> {
             )));
         };
         let view = item(&root.buffer_views, "bufferView", view_index.value(), || name.clone())?;
-        let buffer =
-            item(buffers.list(), "buffer", view.buffer.value(), || format!("bufferView {}", view_index.value()))?;
+        let view_bytes = buffers.view(root, view_index.value(), || name.clone())?;
 
-        let view_start = view.byte_offset.map_or(0, |offset| offset.0);
-        let view_bytes = range(buffer, view_start, view.byte_length.0).ok_or_else(|| {
-            let part = format!("bufferView {}", view_index.value());
-            let (length, has) = (view.byte_length.0, buffer.len());
-            GltfError::part(
-                part,
-                format!("it takes {length} bytes from byte {view_start} of a buffer of {has}; export it again"),
-            )
-        })?;
-
-        let size = component.size() * kind.type_.multiplicity();
+        let size = component.size() * type_.multiplicity();
         let stride = view.byte_stride.map_or(size, |stride| stride.0);
         if !(size..=252).contains(&stride) {
             return Err(wrong(format!(
@@ -154,6 +154,16 @@ impl<'a> Elements<'a> {
 
     /// Iterates over the elements as pairs. Intended for [`TEXTURE_COORDINATES`].
     pub(super) fn pairs(self) -> impl Iterator<Item = [f32; 2]> + 'a {
+        self.fractions()
+    }
+
+    /// Iterates over the elements as red, green and blue. Intended for [`COLORS`].
+    pub(super) fn colors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
+        self.fractions()
+    }
+
+    /// Iterates over the first components of the elements.
+    fn fractions<const N: usize>(self) -> impl Iterator<Item = [f32; N]> + 'a {
         let component = self.component;
         let number = move |bytes: &[u8]| match component {
             ComponentType::U8 => little_endian(bytes) as f32 / 255.0,
@@ -161,8 +171,8 @@ impl<'a> Elements<'a> {
             _ => f32::from_bits(little_endian(bytes)),
         };
         self.elements().map(move |bytes| {
-            let (first, second) = bytes.split_at(component.size());
-            [number(first), number(second)]
+            let mut components = bytes.chunks_exact(component.size()).map(number);
+            std::array::from_fn(|_| components.next().unwrap_or(0.0))
         })
     }
 
@@ -195,10 +205,4 @@ impl<'a> Elements<'a> {
 /// Decodes an integer of up to four bytes, which need not be aligned.
 fn little_endian(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
-}
-
-/// Returns `length` bytes from `start`, or `None` if there are fewer.
-fn range(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
-    let end = usize::try_from(start.checked_add(length)?).ok()?;
-    bytes.get(usize::try_from(start).ok()?..end)
 }

@@ -1,7 +1,9 @@
 //! Bounds on what a file can make the loader allocate.
 
+use crate::Texels;
+
 use super::error::GltfError;
-use super::{MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
+use super::{MAX_IMAGE_BYTES, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// Memory for an object, its mesh excluded: the struct itself, two names of at most 65 characters,
 /// and six allocations.
@@ -50,6 +52,39 @@ impl Budget {
     /// often.
     pub(super) fn pass_over(&mut self) -> Result<(), GltfError> {
         self.passed_over = self.passed_over.checked_sub(1).ok_or(GltfError::TooManyObjects)?;
+        Ok(())
+    }
+}
+
+/// Remaining allowance for the decoded images of a scene. Checked before an image is decoded.
+#[derive(Debug)]
+pub(super) struct ImageBudget {
+    bytes: u64,
+}
+
+impl ImageBudget {
+    pub(super) fn new() -> Self {
+        Self { bytes: MAX_IMAGE_BYTES }
+    }
+
+    /// Reserves the memory for an image of this size.
+    pub(super) fn take(&mut self, [width, height]: [u32; 2]) -> Result<(), String> {
+        let side = Texels::LARGEST_SIDE;
+        if width > side || height > side {
+            return Err(format!(
+                "it has {width} x {height} texels, but at most {side} on a side are read; scale it down"
+            ));
+        }
+        let bytes = Texels::byte_size(width, height);
+        self.bytes = self.bytes.checked_sub(bytes).ok_or_else(|| {
+            let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+            format!(
+                "its {width} x {height} texels and the images before it take {} MiB, but at most {} MiB are read; scale \
+                 them down",
+                mib(MAX_IMAGE_BYTES - self.bytes + bytes),
+                mib(MAX_IMAGE_BYTES)
+            )
+        })?;
         Ok(())
     }
 }

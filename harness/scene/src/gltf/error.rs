@@ -7,18 +7,18 @@ use super::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_
 /// Error in a glTF file, described in one line. Indices count from 0, as in the file itself.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GltfError {
-    /// The file, or an external buffer, cannot be read.
-    #[error("{what} cannot be read: {reason}; give a .glb or .gltf file that may be read")]
+    /// The file, or an external buffer or image, cannot be read.
+    #[error("{what} cannot be read: {reason}; check its name and whether it may be read")]
     Unreadable {
-        /// `the file`, or the buffer and its file.
+        /// `the file`, or the buffer or image and its file.
         what: String,
         /// Reason given by the operating system.
         reason: String,
     },
-    /// The file or its buffers exceed the size limit.
+    /// The file, its buffers or an image exceed the size limit.
     #[error("{what} has {bytes} bytes, but at most {limit} are read; decimate or split it")]
     TooLarge {
-        /// The file, or its buffers.
+        /// The file, its buffers or the image.
         what: String,
         /// Size in bytes.
         bytes: u64,

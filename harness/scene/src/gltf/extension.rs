@@ -33,18 +33,32 @@ impl<'a> Extension<'a> {
     }
 
     pub(super) fn three_numbers(&self, key: &str) -> Result<Option<[f64; 3]>, String> {
+        self.numbers(key, "three numbers")
+    }
+
+    pub(super) fn two_numbers(&self, key: &str) -> Result<Option<[f64; 2]>, String> {
+        self.numbers(key, "two numbers")
+    }
+
+    fn numbers<const N: usize>(&self, key: &str, expected: &str) -> Result<Option<[f64; N]>, String> {
         let Some(value) = self.member(key) else {
             return Ok(None);
         };
-        let wrong = || wrong_kind(key, value, "three numbers");
-        let [red, green, blue] = value.as_array().map(Vec::as_slice).ok_or_else(wrong)? else {
-            return Err(wrong());
-        };
-        let mut numbers = [0.0; 3];
-        for (number, value) in numbers.iter_mut().zip([red, green, blue]) {
+        let wrong = || wrong_kind(key, value, expected);
+        let values: &[Value; N] =
+            value.as_array().and_then(|list| list.as_slice().try_into().ok()).ok_or_else(wrong)?;
+        let mut numbers = [0.0; N];
+        for (number, value) in numbers.iter_mut().zip(values) {
             *number = value.as_f64().ok_or_else(wrong)?;
         }
         Ok(Some(numbers))
+    }
+
+    /// A whole number of at least 0; `None` if the member is absent.
+    pub(super) fn index(&self, key: &str) -> Result<Option<usize>, String> {
+        let index = |value: &Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
+        let wrong = |value| wrong_kind(key, value, "a whole number of at least 0");
+        self.member(key).map(|value| index(value).ok_or_else(|| wrong(value))).transpose()
     }
 
     /// A share, from 0 to 1; `None` if the member is absent.

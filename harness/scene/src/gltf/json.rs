@@ -10,9 +10,9 @@ use super::error::GltfError;
 /// Longer JSON is not repaired: as a tree of values it takes about ten times its size.
 const MENDED_BYTES: usize = 64 << 20;
 
-/// Members of the file that are not needed for drawing. Only the index of a node's skin is
-/// reported.
-const NOT_DRAWN: [&str; 4] = ["images", "samplers", "skins", "textures"];
+/// Members of the file that are not read from the deserialised root. Textures are read from the text
+/// itself (`gltf/texture.rs`), and only the index of a node's skin is reported.
+const NOT_TAKEN: [&str; 4] = ["images", "samplers", "skins", "textures"];
 
 /// Deserialises the file's JSON.
 pub(super) fn root(json: &[u8]) -> Result<Root, GltfError> {
@@ -30,7 +30,7 @@ pub(super) fn root(json: &[u8]) -> Result<Root, GltfError> {
 
 fn mended(mut value: Value) -> Value {
     let Some(members) = value.as_object_mut() else { return value };
-    for name in NOT_DRAWN {
+    for name in NOT_TAKEN {
         members.remove(name);
     }
     // Only the number of animations is reported; nothing else of them is read.

@@ -1,21 +1,25 @@
 //! Materials of a file: base colour, roughness, `KHR_materials_ior`, `KHR_materials_transmission`,
 //! `KHR_materials_volume`, `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, and
-//! `extras.lapidary` for properties that glTF cannot express (`gltf/extras.rs`). All other
-//! properties of a material are listed by `gltf/survey.rs`.
+//! `extras.lapidary` for properties that glTF cannot express (`gltf/extras.rs`). Textures are read by
+//! `gltf/texture.rs`. All other properties of a material are listed by `gltf/survey.rs`.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use ::gltf::json::Root;
 use ::gltf::json::material::Material as JsonMaterial;
+use ::gltf::json::texture::Info;
 use ::gltf::json::validation::Checked;
 use glam::Vec3;
+use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::extras;
 use super::medium;
-use crate::{Dispersion, Material};
+use super::texture::{Reference, Shortfall, Textures};
+use crate::{Dispersion, Material, TextureSlot};
 
 /// Extensions whose specifications forbid combining them with any of [`OF_PHYSICAL_SHADING`].
 const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"];
@@ -40,36 +44,99 @@ const OF_PHYSICAL_SHADING: [&str; 11] = [
 #[derive(Debug)]
 pub(super) struct Materials<'a> {
     root: &'a Root,
-    known: BTreeMap<usize, Material>,
+    textures: Textures<'a>,
+    known: BTreeMap<usize, Known>,
+}
+
+/// A material that a primitive uses.
+#[derive(Debug)]
+pub(super) struct Known {
+    /// The material without textures.
+    pub(super) plain: Material,
+    /// The material with its textures; `None` until a primitive with texture coordinates uses it.
+    pub(super) textured: Option<Material>,
+    /// What is not drawn of its textures.
+    pub(super) lacking: Vec<Shortfall>,
 }
 
 impl<'a> Materials<'a> {
-    pub(super) fn new(root: &'a Root) -> Self {
-        Self { root, known: BTreeMap::new() }
+    pub(super) fn new(root: &'a Root, textures: Textures<'a>) -> Self {
+        Self { root, textures, known: BTreeMap::new() }
     }
 
     /// Returns material `index` of the file, which `user` refers to; for `None`, glTF's default
-    /// material.
-    pub(super) fn get(&mut self, index: Option<usize>, user: &str) -> Result<Material, GltfError> {
+    /// material. It comes with its textures if the user has texture coordinates.
+    pub(super) fn get(
+        &mut self,
+        index: Option<usize>,
+        has_coordinates: bool,
+        user: &str,
+    ) -> Result<Material, GltfError> {
         let Some(index) = index else {
             return Ok(Material::standard());
         };
-        if let Some(material) = self.known.get(&index) {
-            return Ok(material.clone());
-        }
         let json = item(&self.root.materials, "material", index, || user.to_owned())?;
         let part = || designation("material", index, json.name.as_deref());
-        let mut material = read(json).map_err(|problem| GltfError::part(part(), problem))?;
-        material.name = json.name.as_deref().map_or_else(|| format!("material {index}"), excerpt);
-        self.known.insert(index, material.clone());
-        Ok(material)
+        let wrong = |problem: String| GltfError::part(part(), problem);
+        let known = match self.known.entry(index) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => {
+                let mut plain = read(json).map_err(wrong)?;
+                plain.name = json.name.as_deref().map_or_else(|| format!("material {index}"), excerpt);
+                place.insert(Known { plain, textured: None, lacking: Vec::new() })
+            }
+        };
+        if !has_coordinates {
+            return Ok(known.plain.clone());
+        }
+        if let Some(material) = &known.textured {
+            return Ok(material.clone());
+        }
+        let mut material = known.plain.clone();
+        for reference in references(json).map_err(wrong)? {
+            if material.calls_for(reference.slot) {
+                *material.texture_mut(reference.slot) = self.textures.get(reference, &part(), &mut known.lacking)?;
+            }
+        }
+        Ok(known.textured.insert(material).clone())
     }
 
     /// Materials read so far, with their index and JSON.
-    pub(super) fn read(&self) -> impl Iterator<Item = (usize, &'a JsonMaterial, &Material)> {
+    pub(super) fn read(&self) -> impl Iterator<Item = (usize, &'a JsonMaterial, &Known)> {
         let root = self.root;
-        self.known.iter().map(move |(&index, material)| (index, &root.materials[index], material))
+        self.known.iter().map(move |(&index, known)| (index, &root.materials[index], known))
     }
+}
+
+/// References of a material to textures that are read.
+fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
+    let mut found = Vec::new();
+    if let Some(info) = &json.pbr_metallic_roughness.base_color_texture {
+        let extensions = info.extensions.as_ref().map(|all| &all.others);
+        found.push(Reference {
+            slot: TextureSlot::BaseColor,
+            index: info.index.value(),
+            set: info.tex_coord,
+            extensions,
+        });
+    }
+    if let Some(info) = &json.normal_texture {
+        let extensions = info.extensions.as_ref().map(|all| &all.others);
+        found.push(Reference { slot: TextureSlot::Normal, index: info.index.value(), set: info.tex_coord, extensions });
+    }
+    for (name, slot) in [
+        ("KHR_materials_volume", TextureSlot::Thickness),
+        ("KHR_materials_transmission", TextureSlot::Transmission),
+        ("KHR_materials_diffuse_transmission", TextureSlot::DiffuseTransmission),
+    ] {
+        let Some(value) = Extension::of(extensions(json), name)?.member(slot.name()) else { continue };
+        let info = Info::deserialize(value).map_err(|error| {
+            format!("its {} is not valid glTF: {}; export it again", slot.name(), excerpt(&error.to_string()))
+        })?;
+        let extensions = value.get("extensions").and_then(Value::as_object);
+        found.push(Reference { slot, index: info.index.value(), set: info.tex_coord, extensions });
+    }
+    Ok(found)
 }
 
 /// Extensions of a material, by name.
@@ -132,8 +199,12 @@ fn surface(json: &JsonMaterial) -> Result<Material, String> {
     if json.alpha_mode == Checked::Invalid {
         return Err("its alphaMode is not one of glTF's, OPAQUE, MASK and BLEND".to_owned());
     }
+    let normal_scale = json.normal_texture.as_ref().map_or(1.0, |texture| texture.scale);
+    if !normal_scale.is_finite() {
+        return Err("the scale of its normalTexture is not finite in single precision; mend it".to_owned());
+    }
     let double_sided = json.double_sided;
-    Ok(Material { base_color: Vec3::from_array(color), roughness, double_sided, ..Material::standard() })
+    Ok(Material { base_color: Vec3::from_array(color), normal_scale, roughness, double_sided, ..Material::standard() })
 }
 
 fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> {

@@ -7,7 +7,7 @@ use ::gltf::json::validation::Checked;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 
 use super::MAX_COORDINATE;
-use super::accessor::{Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
+use super::accessor::{COLORS, Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, excerpt, item};
@@ -51,7 +51,8 @@ pub(super) fn add_objects(
         let mut reader = Reader { root, buffers, primitive, user: &user, budget };
         let meshes_in_world = reader.meshes(arrangement, &instances)?;
         let material_index = primitive.material.map(|material| material.value());
-        let mut material = materials.get(material_index, &user)?;
+        let has_coordinates = meshes_in_world.iter().all(|(mesh, _)| !mesh.uvs.is_empty());
+        let mut material = materials.get(material_index, has_coordinates, &user)?;
         // glTF states the thickness in the mesh's space, unlike its other lengths.
         if material.thickness > 0.0 {
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
@@ -129,12 +130,13 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
         let normals = self.attribute(&Semantic::Normals, VECTORS)?;
         let uvs = self.attribute(&Semantic::TexCoords(0), TEXTURE_COORDINATES)?;
+        let colors = self.attribute(&Semantic::Colors(0), COLORS)?;
         let indices = match self.primitive.indices {
             Some(index) => Some(self.elements(index.value(), INDICES)?),
             None => None,
         };
         let vertices = positions.count();
-        for (what, elements) in [("normals", normals), ("texture coordinates", uvs)] {
+        for (what, elements) in [("normals", normals), ("texture coordinates", uvs), ("colours", colors)] {
             if elements.is_some_and(|elements| elements.count() != vertices) {
                 let problem = format!("it has not as many {what} as positions; export it again");
                 return Err(GltfError::part(self.user.to_owned(), problem));
@@ -147,7 +149,8 @@ impl<'a> Reader<'a> {
         let times = instances.count() as u64;
         let joined = (MOST_JOINED / vertices.max(3 * triangles).max(1)).max(1);
         let objects = times.div_ceil(joined as u64);
-        let vertex_bytes = 2 * size_of::<Vec3>() + uv_bytes;
+        let color_bytes = if colors.is_some() { size_of::<Vec3>() } else { 0 };
+        let vertex_bytes = 2 * size_of::<Vec3>() + uv_bytes + color_bytes;
         self.budget.take(objects, times * vertices as u64, vertex_bytes, times * triangles as u64)?;
 
         let corners = match indices {
@@ -156,6 +159,7 @@ impl<'a> Reader<'a> {
             None => (0..vertices as u32).collect(),
         };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
+        let colors = colors.map(|colors| self.colors(colors)).transpose()?.unwrap_or_default();
         let mesh = |transform: DMat4, instance: Option<usize>| -> Result<Mesh, GltfError> {
             let positions = self.positions(positions, transform, instance)?;
             let linear = DMat3::from_mat4(transform);
@@ -165,7 +169,7 @@ impl<'a> Reader<'a> {
                 Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
                 None => shared_normals(&positions, &indices, Averaging::Angle),
             };
-            Ok(Mesh { positions, normals, uvs: uvs.clone(), indices, halo: Vec::new() })
+            Ok(Mesh { positions, normals, uvs: uvs.clone(), colors: colors.clone(), indices, halo: Vec::new() })
         };
         let mut all: Vec<Mesh> = Vec::new();
         for (instance, transform) in instances.transforms().enumerate() {
@@ -223,6 +227,19 @@ impl<'a> Reader<'a> {
             })
         };
         elements.pairs().enumerate().map(finite).collect()
+    }
+
+    /// Returns the colours, within 0 to 1; none if all are white.
+    fn colors(&self, elements: Elements<'_>) -> Result<Vec<Vec3>, GltfError> {
+        let color = |(vertex, [red, green, blue]): (usize, [f32; 3])| {
+            let color = Vec3::new(red, green, blue);
+            let problem =
+                || format!("vertex {vertex} has the colour ({red}, {green}, {blue}), but it must be finite; mend it");
+            let finite = color.is_finite().then(|| color.clamp(Vec3::ZERO, Vec3::ONE));
+            finite.ok_or_else(|| GltfError::part(self.user.to_owned(), problem()))
+        };
+        let colors: Vec<Vec3> = elements.colors().enumerate().map(color).collect::<Result<_, _>>()?;
+        Ok(if colors.iter().all(|color| *color == Vec3::ONE) { Vec::new() } else { colors })
     }
 
     fn in_range(&self, elements: Elements<'_>, vertices: usize) -> Result<Vec<u32>, GltfError> {

@@ -7,15 +7,14 @@ use serde_json::{Map, Value};
 use super::KNOWN_EXTENSIONS;
 use super::error::{self, GltfError};
 
-/// Extensions of images, textures, animations and descriptions: nothing that is drawn here needs
-/// them.
-const OF_WHAT_IS_NOT_DRAWN: [&str; 9] = [
+/// Extensions of images, animations and descriptions: nothing that is drawn here needs them. A
+/// texture in another format than PNG and JPEG is replaced by its factor.
+const OF_WHAT_IS_NOT_DRAWN: [&str; 8] = [
     "EXT_texture_avif",
     "EXT_texture_webp",
     "KHR_animation_pointer",
     "KHR_materials_variants",
     "KHR_texture_basisu",
-    "KHR_texture_transform",
     "KHR_xmp",
     "KHR_xmp_json_ld",
     "MSFT_texture_dds",

@@ -11,10 +11,11 @@ use serde_json::{Map, Value};
 
 use super::error::excerpt;
 use super::lacking::{Lacking, User};
-use super::material::{Materials, extensions};
+use super::material::{Known, Materials, extensions};
 use super::nodes::ShownNode;
-use super::{KNOWN_EXTENSIONS, extras, instances, light_node};
-use crate::Material;
+use super::texture::FACTOR;
+use super::{KNOWN_EXTENSIONS, extras, instances, light_node, not_drawn};
+use crate::{Material, TextureSlot};
 
 /// Lists all unsupported features of the file. Its references are known to be valid.
 pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Materials<'_>) -> Vec<String> {
@@ -27,13 +28,13 @@ pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Material
     for (index, mesh) in meshes.into_iter().filter_map(|index| Some((index, root.meshes.get(index)?))) {
         let user = User { kind: "mesh", index, name: mesh.name.as_deref() };
         unknown_extensions(mesh.extensions.as_ref().map(|all| &all.others), user, &mut lacking);
-        mesh.primitives.iter().for_each(|primitive| self::primitive(primitive, user, &mut lacking));
+        mesh.primitives.iter().for_each(|primitive| self::primitive(root, primitive, user, &mut lacking));
     }
-    for (index, json, material) in materials.read() {
+    for (index, json, known) in materials.read() {
         let user = User { kind: "material", index, name: json.name.as_deref() };
-        textures(json, user, &mut lacking);
-        surface(json, material, user, &mut lacking);
-        inside(json, material, user, &mut lacking);
+        textures(json, known, user, &mut lacking);
+        surface(json, &known.plain, user, &mut lacking);
+        inside(json, &known.plain, user, &mut lacking);
     }
     cameras(root, nodes, &mut lacking);
     if !root.animations.is_empty() {
@@ -86,15 +87,28 @@ fn node(root: &Root, shown: &ShownNode<'_>, lacking: &mut Lacking) {
     }
 }
 
-fn primitive(primitive: &Primitive, mesh: User<'_>, lacking: &mut Lacking) {
+const COLORS: &str = "vertex colours";
+
+fn primitive(root: &Root, primitive: &Primitive, mesh: User<'_>, lacking: &mut Lacking) {
     let modes = [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan];
     if !modes.into_iter().any(|mode| primitive.mode == Checked::Valid(mode)) {
         lacking.note("points and lines", "a primitive".to_owned(), "triangles alone are drawn", mesh);
         return;
     }
     unknown_extensions(primitive.extensions.as_ref().map(|all| &all.others), mesh, lacking);
-    if primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(_)))) {
-        lacking.note("vertex colours", "`COLOR_n`".to_owned(), "the material's colour is drawn alone", mesh);
+    let has = |wanted: &dyn Fn(&Semantic) -> bool| {
+        primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(semantic) if wanted(semantic)))
+    };
+    if not_drawn::VERTEX_COLORS && has(&|semantic| *semantic == Semantic::Colors(0)) {
+        lacking.note(COLORS, "`COLOR_0`".to_owned(), "the material's colour is drawn alone", mesh);
+    }
+    if has(&|semantic| matches!(semantic, Semantic::Colors(1..))) {
+        lacking.note(COLORS, "`COLOR_n` after the first".to_owned(), "the first is drawn alone", mesh);
+    }
+    let material = primitive.material.and_then(|index| root.materials.get(index.value()));
+    let mut textures = material.into_iter().flat_map(texture_members);
+    if !has(&|semantic| *semantic == Semantic::TexCoords(0)) && textures.any(is_read) {
+        lacking.note(TEXTURES, "a missing `TEXCOORD_0`".to_owned(), "factors are drawn alone", mesh);
     }
     if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
         lacking.note("morph targets", "`targets`".to_owned(), "the body is drawn without them", mesh);
@@ -107,7 +121,28 @@ fn primitive(primitive: &Primitive, mesh: User<'_>, lacking: &mut Lacking) {
 
 const DIELECTRIC: &str = "drawn as a dielectric";
 
-fn textures(json: &JsonMaterial, user: User<'_>, lacking: &mut Lacking) {
+fn textures(json: &JsonMaterial, known: &Known, user: User<'_>, lacking: &mut Lacking) {
+    for name in texture_members(json).filter(|name| !is_read(name)) {
+        lacking.note(TEXTURES, quoted(name), FACTOR, user);
+    }
+    for (what, instead) in &known.lacking {
+        lacking.note(TEXTURES, what.clone(), instead, user);
+    }
+    let loaded = known.textured.iter().flat_map(Material::textures).map(|(slot, _)| slot);
+    for slot in loaded.filter(|slot| not_drawn::TEXTURES.contains(slot)) {
+        lacking.note(TEXTURES, quoted(slot.name()), FACTOR, user);
+    }
+}
+
+const TEXTURES: &str = "textures";
+
+/// Whether textures of this member are read.
+fn is_read(member: &str) -> bool {
+    TextureSlot::ALL.iter().any(|slot| slot.name() == member)
+}
+
+/// Names of the members of a material that refer to textures.
+fn texture_members(json: &JsonMaterial) -> impl Iterator<Item = &str> {
     let factors = &json.pbr_metallic_roughness;
     let of_core = [
         (factors.base_color_texture.is_some(), "baseColorTexture"),
@@ -119,10 +154,7 @@ fn textures(json: &JsonMaterial, user: User<'_>, lacking: &mut Lacking) {
     let of_core = of_core.into_iter().filter_map(|(is_there, name)| is_there.then_some(name));
     let read = extensions(json).into_iter().flatten().filter(|(name, _)| KNOWN_EXTENSIONS.contains(&name.as_str()));
     let members = read.filter_map(|(_, extension)| extension.as_object()).flat_map(Map::keys);
-    let of_extensions = members.map(String::as_str).filter(|member| member.ends_with("Texture"));
-    for name in of_core.chain(of_extensions) {
-        lacking.note("textures", quoted(name), "a factor is drawn alone", user);
-    }
+    of_core.chain(members.map(String::as_str).filter(|member| member.ends_with("Texture")))
 }
 
 /// Lists the properties of a surface that a dielectric does not have.

@@ -8,13 +8,16 @@ use crate::normals::FALLBACK_NORMAL;
 use crate::{Dispersion, Material, Medium, Mineral, glb};
 
 mod example;
+mod head;
 mod instancing;
 mod lacking;
 mod lights;
 mod refusals;
 mod refused_data;
 mod texture_coordinates;
+mod textures;
 mod transmission;
+mod vertex_colors;
 
 /// Returns the three corners of a right triangle, followed by the indices 0 1 2 0 as shorts.
 fn binary() -> Vec<u8> {
@@ -219,10 +222,10 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         diffuse_transmission_color: Vec3::new(0.5, 0.0, 1.0),
         thickness: 3.0,
         roughness: 0.25,
-        double_sided: false,
         sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
         medium: Some(Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.0))),
         solver: Some("tiled-18-128".parse().unwrap()),
+        ..Material::standard()
     };
     assert_eq!(material.unwrap(), expected);
 }

@@ -1,16 +1,28 @@
-use glam::{Vec2, Vec3};
+use glam::Vec2;
+
+use lapidary_scene::{Encoding, Texels, Texture};
 
 use super::*;
 
 #[test]
 fn the_hand_written_seed_reaches_what_it_says() {
-    let [_, document] = seeds().unwrap();
+    let [_, document, _] = seeds().unwrap();
     let scene = gltf::parse(&document, None).unwrap();
     assert_eq!(scene.lights.len(), 3);
     let textured = scene.objects.iter().filter(|object| !object.mesh.uvs.is_empty());
     // Two of the mesh's three primitives, at two nodes.
     assert_eq!((scene.objects.len(), textured.count()), (6, 4));
     assert!(scene.objects.iter().any(|object| object.material.medium.is_some() && object.material.sigma0.is_some()));
+}
+
+#[test]
+fn the_textured_seed_has_what_it_says() {
+    let [.., textured] = seeds().unwrap();
+    let scene = gltf::parse(&textured, None).unwrap();
+    let object = &scene.objects[0];
+    assert!(!object.mesh.colors.is_empty() && object.material.textures().count() == 5);
+    let sizes = object.material.textures().map(|(_, texture)| (texture.texels.width(), texture.texels.height()));
+    assert_eq!(sizes.filter(|size| *size == (16, 8)).count(), 2, "two textures are in JPEG");
 }
 
 #[test]
@@ -38,7 +50,7 @@ fn loader_survives_many_mutated_bytes() {
 
 #[test]
 fn every_kind_of_edit_changes_the_file() {
-    let [seed, _] = seeds().unwrap();
+    let [seed, ..] = seeds().unwrap();
     let mut runner = TestRunner::deterministic();
     let mut kinds = std::collections::HashMap::new();
     for _ in 0..500 {
@@ -69,5 +81,13 @@ fn a_scene_that_breaks_a_promise_is_noticed() {
     assert!(broken(|scene| scene.objects[0].material.attenuation_distance = 0.0));
     assert!(broken(|scene| scene.objects[0].mesh.uvs = vec![Vec2::ZERO]));
     assert!(broken(|scene| scene.objects[0].mesh.uvs = vec![Vec2::NAN; scene.objects[0].mesh.positions.len()]));
+    assert!(broken(|scene| scene.objects[0].mesh.colors = vec![Vec3::ONE]));
+    assert!(
+        broken(|scene| scene.objects[0].mesh.colors = vec![2.0 * Vec3::ONE; scene.objects[0].mesh.positions.len()])
+    );
+    assert!(broken(|scene| {
+        let texels = Texels::new(1, 1, vec![0; 4]).unwrap();
+        scene.objects[0].material.normal_texture = Some(Texture::new(texels.into(), Encoding::Linear));
+    }));
     assert!(broken(|scene| scene.lights = vec![Light::Directional { toward: Vec3::ZERO, irradiance: Vec3::ONE }]));
 }

@@ -6,12 +6,14 @@
 //! [`Mesh`], `Material` or [`Light`].
 
 mod checks;
+mod textured;
 
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, any, prop_oneof};
 use proptest::sample::Index;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
+use glam::Vec3;
 use lapidary_scene::{Light, Mesh, MeshDiagnosis, Scene, SceneError, glb, gltf};
 
 /// Cases of the test suite, which take seconds.
@@ -98,15 +100,16 @@ const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_
 {"buffer":0,"byteOffset":48,"byteLength":6}],
 "buffers":[{"byteLength":54,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAECAgED"}]}"#;
 
-/// Returns the valid files to be broken: an octahedron as .glb, and a small hand-written .gltf.
+/// Returns the valid files to be broken: an octahedron as .glb, a small hand-written .gltf, and an
+/// octahedron as .glb with colours and textures.
 ///
 /// # Errors
-/// Never fails: both files are made from constants. The type comes from the functions that make
+/// Never fails: the files are made from constants. The type comes from the functions that make
 /// them.
-pub fn seeds() -> Result<[Vec<u8>; 2], SceneError> {
+pub fn seeds() -> Result<[Vec<u8>; 3], SceneError> {
     let octahedron = Scene::named("octahedron")?;
     let written = glb::write(&octahedron).unwrap_or_default();
-    Ok([written, DOCUMENT.as_bytes().to_vec()])
+    Ok([written, DOCUMENT.as_bytes().to_vec(), textured::seed(octahedron)])
 }
 
 /// Returns lists of 1 to 64 edits. Most are short, so that many files stay readable for a long way.
@@ -258,6 +261,9 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     if let Some(problem) = scene.objects.iter().find_map(|object| object.material.problem()) {
         return Err(format!("a broken material: {problem}"));
     }
+    if scene.objects.iter().any(|object| object.mesh.uvs.is_empty() && object.material.textures().count() > 0) {
+        return Err("textures without coordinates".to_owned());
+    }
     let problem = scene.lights.iter().find_map(Light::problem);
     problem.map_or(Ok(()), |problem| Err(format!("a broken light: {problem}")))
 }
@@ -266,13 +272,15 @@ fn is_sound(mesh: &Mesh) -> bool {
     mesh.normals.len() == mesh.positions.len()
         && (mesh.uvs.is_empty() || mesh.uvs.len() == mesh.positions.len())
         && mesh.uvs.iter().all(|uv| uv.is_finite())
+        && (mesh.colors.is_empty() || mesh.colors.len() == mesh.positions.len())
+        && mesh.colors.iter().all(|color| color.cmpge(Vec3::ZERO).all() && color.cmple(Vec3::ONE).all())
         && mesh.indices.len().is_multiple_of(3)
         && mesh.triangles().count() == mesh.triangle_count()
         && mesh.positions.iter().all(|position| position.is_finite())
         && mesh.normals.iter().all(|normal| normal.is_normalized())
 }
 
-/// Runs `cases` cases, the same each time, half of them on each seed.
+/// Runs `cases` cases, the same each time, a third of them on each seed.
 ///
 /// # Errors
 /// Returns, in words, the shrunk list of edits that makes the loader panic or break a promise.
@@ -281,8 +289,8 @@ pub fn run(cases: u32) -> Result<Tally, String> {
     let tally = std::cell::Cell::new(Tally::default());
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let outcome = runner.run(&(any::<bool>(), edits()), |(second, edits)| {
-        let bytes = mutate(&seeds[usize::from(second)], &edits);
+    let outcome = runner.run(&(any::<Index>(), edits()), |(seed, edits)| {
+        let bytes = mutate(&seeds[seed.index(seeds.len())], &edits);
         let loaded = check(&bytes).map_err(TestCaseError::fail)?;
         let mut counts = tally.get();
         if loaded {

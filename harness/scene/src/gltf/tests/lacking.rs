@@ -38,34 +38,42 @@ fn plain_files_and_built_in_scenes_lack_nothing() {
     }
 }
 
+/// Textures that are not read are named by their material, the others until something draws them.
 #[test]
 fn textures_of_every_slot_are_named() {
     let texture = json!({"index": 0});
-    let found = of_material(json!({
-        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0, "baseColorTexture": texture, "metallicRoughnessTexture": texture},
-        "normalTexture": texture,
-        "occlusionTexture": texture,
-        "emissiveTexture": texture,
-        "extensions": {
-            "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": texture},
-            "KHR_materials_volume": {"thicknessFactor": 1, "thicknessTexture": texture},
-            "KHR_materials_diffuse_transmission":
-                {"diffuseTransmissionTexture": texture, "diffuseTransmissionColorTexture": texture},
-        },
-    }));
-    let slots = [
-        "baseColorTexture",
-        "diffuseTransmissionColorTexture",
-        "diffuseTransmissionTexture",
-        "emissiveTexture",
-        "metallicRoughnessTexture",
-        "normalTexture",
-        "occlusionTexture",
-        "thicknessTexture",
-        "transmissionTexture",
-    ];
-    let expected = slots.map(|slot| format!("textures: `{slot}` of material `gem` (a factor is drawn alone)"));
-    assert_eq!(found, expected);
+    let found = lacking(|d| {
+        d["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);
+        // The first two coordinates of the corners.
+        let uvs = json!({"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"});
+        d["accessors"].as_array_mut().unwrap().push(uvs);
+        d["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 0, "byteLength": 36, "byteStride": 12}));
+        d["textures"] = json!([{"source": 0}]);
+        d["images"] = json!([{"uri": super::textures::base64(&super::textures::png())}]);
+        d["materials"][0] = json!({
+            "name": "gem",
+            "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0, "baseColorTexture": texture, "metallicRoughnessTexture": texture},
+            "normalTexture": texture,
+            "occlusionTexture": texture,
+            "emissiveTexture": texture,
+            "extensions": {
+                "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": texture},
+                "KHR_materials_volume": {"thicknessFactor": 1, "thicknessTexture": texture},
+                "KHR_materials_diffuse_transmission": {
+                    "diffuseTransmissionFactor": 1,
+                    "diffuseTransmissionTexture": texture,
+                    "diffuseTransmissionColorTexture": texture,
+                },
+            },
+        });
+    });
+    let not_read =
+        ["diffuseTransmissionColorTexture", "emissiveTexture", "metallicRoughnessTexture", "occlusionTexture"];
+    let mut slots: Vec<&str> = crate::gltf::not_drawn::TEXTURES.iter().map(|slot| slot.name()).collect();
+    slots.extend(not_read);
+    slots.sort_unstable();
+    let says = |slot: &str| format!("textures: `{slot}` of material `gem` (a factor is drawn alone)");
+    assert_eq!(found, slots.into_iter().map(says).collect::<Vec<_>>());
 }
 
 #[test]
@@ -168,22 +176,24 @@ fn what_moves_and_what_is_no_triangle_is_named() {
         };
         let mut colored = primitive.clone();
         colored["attributes"]["COLOR_0"] = json!(0);
+        colored["attributes"]["COLOR_1"] = json!(0);
         let morphed = with("targets", json!([{"POSITION": 0}]));
         d["meshes"][0]["primitives"] = json!([colored, morphed, with("mode", json!(0)), with("mode", json!(3))]);
         d["nodes"][0]["skin"] = json!(0);
         d["skins"] = json!([{"joints": [0]}]);
         d["animations"] = json!([{"channels": [], "samplers": []}, {"channels": [], "samplers": []}]);
-        d["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_materials_ior"]);
+        d["extensionsUsed"] = json!(["KHR_texture_basisu", "KHR_texture_transform", "KHR_materials_ior"]);
     });
     assert_eq!(
         found,
         [
             "animations: 2 of the file (bodies are drawn at rest)",
-            "extensions: `KHR_texture_transform` of the file (not known)",
+            "extensions: `KHR_texture_basisu` of the file (not known)",
             "morph targets: `targets` of mesh 0 (the body is drawn without them)",
             "points and lines: a primitive of mesh 0 (triangles alone are drawn)",
             "skins: `skin` of node `stone` (the body is drawn at rest)",
-            "vertex colours: `COLOR_n` of mesh 0 (the material's colour is drawn alone)",
+            "vertex colours: `COLOR_0` of mesh 0 (the material's colour is drawn alone)",
+            "vertex colours: `COLOR_n` after the first of mesh 0 (the first is drawn alone)",
         ]
     );
 }
