@@ -11,6 +11,16 @@ fn cdrf_sigma_naive(sigma0: f32, curvature: f32) -> f32 {
     return sigma0 * curvature;
 }
 
+// cdrf_sigma_power of the plain product.
+// Returns: 1.8 (mean_free_path curvature)^0.59.
+// Units: as for cdrf_sigma_power.
+// Domain: mean_free_path, curvature in [1e-6, 1e18].
+// Outside: a NaN in a hollow; a NaN or infinite.
+// Accuracy: naive
+fn cdrf_sigma_power_naive(mean_free_path: f32, curvature: f32) -> f32 {
+    return 1.8f * pow(mean_free_path * curvature, 0.59f);
+}
+
 // cdrf_edge to first order, with an unguarded quotient.
 // Returns: max(cosine, 0), blurred as if the cosine were a straight line.
 // Units: as for cdrf_edge.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
-// requires: cdrf, curvature, environment, fresnel, microfacet, reflective_shadow_map
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection
+// requires: cdrf, curvature, environment, fresnel, half_space, microfacet, reflective_shadow_map
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection, scattering_law
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -16,6 +16,9 @@ override EFFECT_CDRF: bool = true;
 // The form of the reflectance: 0 wrap lighting, 1 a table through a sampler, 2 a table filtered by
 // hand (for formats that no sampler filters), 3 cheap, 4 accurate, 5 quadrature, 6 spherical.
 override CDRF_FORM: u32 = 4u;
+// How far light spreads, from curvature and material: 0 sigma0 times curvature; 1 the power law of random
+// walks through spheres; 2 their drift and a width, which take the half space's law for granted.
+override SPREAD_FORM: u32 = 0u;
 // The source of the curvature. From the pixel's derivatives: 0 mean, 1 of the section towards each
 // light, 2 mean by the usual |dN| / |dP|. From the vertices: 3 mean. Derivatives need no data, but
 // jump between the triangles of a coarse mesh; curvatures given at the vertices do not.
@@ -38,6 +41,8 @@ const CDRF_FORM_TEXELS: u32 = 2u;
 const CDRF_FORM_CHEAP: u32 = 3u;
 const CDRF_FORM_QUADRATURE: u32 = 5u;
 const CDRF_FORM_SPHERICAL: u32 = 6u;
+const SPREAD_FORM_POWER: u32 = 1u;
+const SPREAD_FORM_DRIFT: u32 = 2u;
 const CURVATURE_FORM_TOWARDS: u32 = 1u;
 const CURVATURE_FORM_NAIVE: u32 = 2u;
 const CURVATURE_FORM_VERTEX: u32 = 3u;
@@ -59,6 +64,9 @@ struct CdrfMaterial {
     table_sigma0: f32,
     // Width of the microfacets' slopes, the square of the roughness; 0 for a polished surface.
     alpha: f32,
+    // Mean free path of each channel, in units of length; made safe by the host as sigma0 is.
+    free_path: vec3f,
+    law: ScatteringLaw,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -164,6 +172,20 @@ fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
 
 // Width of the Gaussian for each channel: cdrf_sigma, with sigma0 already made safe by the host.
 fn cdrf_sigmas(curvature: f32) -> vec3f {
+    if (SPREAD_FORM == SPREAD_FORM_POWER) {
+        return vec3f(
+            cdrf_sigma_power(material.free_path.x, curvature),
+            cdrf_sigma_power(material.free_path.y, curvature),
+            cdrf_sigma_power(material.free_path.z, curvature),
+        );
+    }
+    if (SPREAD_FORM == SPREAD_FORM_DRIFT) {
+        return vec3f(
+            cdrf_drift(material.free_path.x, curvature, material.law.gamma.x).sigma,
+            cdrf_drift(material.free_path.y, curvature, material.law.gamma.y).sigma,
+            cdrf_drift(material.free_path.z, curvature, material.law.gamma.z).sigma,
+        );
+    }
     return material.sigma0 * abs(cdrf_finite(curvature));
 }
 
@@ -179,6 +201,11 @@ fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
     ).x;
 }
 
+// The reflectance of one channel, after the drift of its light.
+fn cdrf_drifted(cosine: f32, drift: CdrfDrift) -> f32 {
+    return drift.share * cdrf_cheap(cdrf_shifted(cosine, drift.shift), drift.sigma);
+}
+
 // The reflectance towards one light, per channel.
 fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     if (!EFFECT_CDRF) {  //+cdrf
@@ -188,6 +215,13 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     if (CDRF_FORM == CDRF_FORM_TABLE) {
         let coordinates = cdrf_table_coordinates(cosine, material.table_sigma0 * abs(cdrf_finite(curvature)));
         return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
+    }
+    if (SPREAD_FORM == SPREAD_FORM_DRIFT) {
+        return vec3f(
+            cdrf_drifted(cosine, cdrf_drift(material.free_path.x, curvature, material.law.gamma.x)),
+            cdrf_drifted(cosine, cdrf_drift(material.free_path.y, curvature, material.law.gamma.y)),
+            cdrf_drifted(cosine, cdrf_drift(material.free_path.z, curvature, material.law.gamma.z)),
+        );
     }
     let sigma = cdrf_sigmas(curvature);
     if (CDRF_FORM == CDRF_FORM_TEXELS) {
@@ -225,8 +259,22 @@ fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
     return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
 }
 
-// Irradiance, each light's part spread by its reflectance.
-fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3f {
+// The cosine at which the light that leaves here has entered, for the law of the matter: its mean over
+// where the light entered, weighted with the light. Of a Gaussian around a small angle x that is x + sigma^2 / x on
+// the lit side and 1.25 sigma at the terminator; the root lies between, and is not grazing where
+// something is spread. Where nothing is, it is the reflectance, the clamped cosine.
+fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
+    if (!EFFECT_CDRF) {  //+cdrf
+        return reflectance;
+    }  //+cdrf
+    //+cdrf {
+    let sigma = cdrf_sigmas(curvature);
+    return min(sqrt(reflectance * reflectance + sigma * sigma), vec3f(1.0f));
+    //+cdrf }
+}
+
+// Irradiance, each light's part spread by its reflectance and seen by the law of the matter.
+fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
@@ -236,15 +284,25 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
         }
         let cosine = dot(normal, arrival.direction);
         var reflectance = cdrf_reflectance(cosine, curvature);
+        //+half_space {
+        var law = vec3f(1.0f);
+        if (EFFECT_HALF_SPACE) {
+            law = scattering_law_of_light(dot(normal, toward_eye), cdrf_entered(reflectance, curvature), material.law);
+        }
+        //+half_space }
         if (EFFECT_SHADOW) {
             reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));
         }
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
         }
+        if (EFFECT_HALF_SPACE) {
+            reflectance *= law;
+        }
         received += arrival.irradiance * reflectance;
     }
     if (EFFECT_ENVIRONMENT) {
+        var irradiance = vec3f(0.0f);
         var around = HarmonicsAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
         if (!ENVIRONMENT_AT_VERTICES) {
             around = harmonics_around(normal);
@@ -255,12 +313,16 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
             let red = cdrf_harmonic_weights(sigma.x);
             let green = cdrf_harmonic_weights(sigma.y);
             let blue = cdrf_harmonic_weights(sigma.z);
-            received += harmonics_irradiance(around, red, green, blue);
+            irradiance = harmonics_irradiance(around, red, green, blue);
             //+cdrf }
         } else {  //+cdrf
             let weights = cdrf_harmonic_weights(0.0f);
-            received += harmonics_irradiance(around, weights, weights, weights);
+            irradiance = harmonics_irradiance(around, weights, weights, weights);
         }  //+cdrf
+        if (EFFECT_HALF_SPACE) {
+            irradiance *= scattering_law_around(dot(normal, toward_eye), material.law);
+        }
+        received += irradiance;
     }
     return received;
 }
@@ -292,7 +354,7 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     if (EFFECT_TEXTURE_DIFFUSION) {  //+texture_diffusion
         received = textureSampleLevel(diffused, diffused_sampler, input.uv, 0.0f).rgb;  //+texture_diffusion
     } else {  //+texture_diffusion
-        received = cdrf_received(input, surface, normal);
+        received = cdrf_received(input, surface, normal, toward_eye);
     }  //+texture_diffusion
     let inside = 0.31830987f * material.base_color * received;
     var radiance = inside;

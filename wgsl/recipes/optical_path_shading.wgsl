@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
 //   Programming", section 3.2.
-// requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
+// requires: environment, cdrf, fresnel, half_space, microfacet, optical_path, reflective_shadow_map, voxelization
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection, scattering_law
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
 // voxelization, reflective_shadow_map, optical_path_seed and a solver have filled the costs.
@@ -39,6 +39,7 @@ struct OpticalPathBody {
     alpha: f32,
     // The irradiance whose cost is 0, for each channel.
     largest: vec3f,
+    law: ScatteringLaw,
 }
 
 @group(0) @binding(0) var<uniform> view: OpticalPathView;
@@ -148,19 +149,31 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
                 continue;
             }
             counted = light;
-            received += lit * cosine * arrival.irradiance;
+            var part = lit * cosine * arrival.irradiance;
+            if (EFFECT_HALF_SPACE) {
+                part *= scattering_law_of_light(dot(normal, toward_eye), vec3f(cosine), body.law);
+            }
+            received += part;
             if (EFFECT_MICROFACET) {
                 highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
             }
         }
     }
     if (EFFECT_OPTICAL_PATH) {
+        var along = body.largest * optical_path_along(input.position);
+        if (EFFECT_HALF_SPACE) {
+            along *= scattering_law_inside(dot(normal, toward_eye), body.law);
+        }
         // Light that falls on the point itself takes one of the paths, of length 0.
-        received = max(received, body.largest * optical_path_along(input.position));
+        received = max(received, along);
     }
     if (EFFECT_ENVIRONMENT) {
         let weights = cdrf_harmonic_weights(0.0f);
-        received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+        var irradiance = harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+        if (EFFECT_HALF_SPACE) {
+            irradiance *= scattering_law_around(dot(normal, toward_eye), body.law);
+        }
+        received += irradiance;
     }
     let inside = 0.31830987f * body.base_color * received;
     var radiance = inside;

@@ -2,7 +2,7 @@
 
 mod outside;
 
-use crate::{self as mirror, CdrfTexels, oracle};
+use crate::{self as mirror, CdrfDrift, CdrfTexels, oracle};
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near, with_promises};
@@ -10,6 +10,7 @@ use lapidary_assay::mirror_struct;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 mirror_struct!(crate, CdrfTexels { lower, upper, weight });
+mirror_struct!(crate, CdrfDrift { sigma, shift, share });
 
 const M: &str = "cdrf";
 
@@ -140,7 +141,7 @@ pub fn formulas() -> Vec<Formula> {
 }
 
 fn functions() -> Vec<Formula> {
-    [widths(), helpers(), rungs(), accurate(), others(), tables()].into_iter().flatten().collect()
+    [widths(), drifts(), helpers(), rungs(), accurate(), others(), tables()].into_iter().flatten().collect()
 }
 
 fn widths() -> Vec<Formula> {
@@ -178,6 +179,114 @@ fn widths() -> Vec<Formula> {
             (draws.magnitude(-20, 20), draws.magnitude(-20, 20))
         })
         .benign(1e-6)
+        .build(),
+    ]
+}
+
+/// Draws a mean free path and a curvature: of every kind, or so that their product is in the range of
+/// use, with either sign.
+fn turn(draws: &mut Draws<'_>) -> (f32, f32) {
+    if draws.below(3) == 0 {
+        return (any(draws), any(draws));
+    }
+    let path = draws.magnitude(-12, 12);
+    let turn = if draws.below(3) == 0 { draws.signed(-60, 2) } else { draws.between(-1.2, 1.2) };
+    (path, turn / path)
+}
+
+/// Draws the root of 1 - albedo: the ends, beside them, and anywhere.
+fn gamma(draws: &mut Draws<'_>) -> f32 {
+    match draws.below(4) {
+        0 => draws.pick(&[0.0, 1.0, -0.5, 1.5]),
+        1 => draws.magnitude(-60, 0),
+        _ => draws.between(0.0, 1.0),
+    }
+}
+
+fn drifts() -> Vec<Formula> {
+    const NAIVE: &str = "cdrf_sigma_power_naive";
+    const LEAST: f64 = 1.5e-7;
+    vec![
+        formula(M, "cdrf_sigma_power", mirror::sigma_power, oracle::sigma_power, turn)
+            .edge("either a NaN", |(l, k)| l.is_nan() || k.is_nan())
+            .edge("no curvature", |(l, k)| l > 0.0 && k == 0.0)
+            .edge("a hollow", |(l, k)| l > 0.0 && k < 0.0)
+            .edge("infinite curvature", |(l, k)| l > 0.0 && k.is_infinite())
+            .invariant("positive and finite", |_, sigma: f32| {
+                if (1.4e-7..=3.3e21).contains(&sigma) { Ok(()) } else { Err(format!("sigma {sigma}")) }
+            })
+            .pair(
+                "the exponent",
+                |(l, k)| (l, 2.0 * k),
+                |(l, k), one: f32, other: f32| {
+                    let product = oracle::sigma(l.into(), k.into());
+                    if (1e-11..1e12).contains(&product) && k.abs() < 1e17 && l < 1e17 {
+                        near("quotient", f64::from(other / one), 2f64.powf(0.59), 1e-4)
+                    } else {
+                        Ok(())
+                    }
+                },
+            )
+            .hard_case("no curvature", (1.0, 0.0), (&[0.0], LEAST), (NAIVE, 0.0))
+            .hard_case("curvature a NaN", (1.0, f32::NAN), (&[0.0], LEAST), (NAIVE, f64::INFINITY))
+            .hard_case("a hollow", (0.25, -2.0), (&[1.8 * 0.5f64.powf(0.59)], 6e-5), (NAIVE, f64::INFINITY))
+            .hard_case("huge curvature", (1e30, 1e30), (&[1.8 * 1e36f64.powf(0.59)], 2e17), (NAIVE, f64::INFINITY))
+            .build(),
+        formula(M, "cdrf_sigma_power_naive", mirror::sigma_power_naive, oracle::sigma_power_naive, |draws| {
+            (draws.magnitude(-10, 20), draws.magnitude(-10, 20))
+        })
+        .benign(4e-5)
+        .build(),
+        formula(M, "cdrf_drift", mirror::drift, oracle::drift, |draws| {
+            let (path, curvature) = turn(draws);
+            (path, curvature, gamma(draws))
+        })
+        .edge("either a NaN", |(l, k, _)| l.is_nan() || k.is_nan())
+        .edge("no curvature", |(l, k, _)| l > 0.0 && k == 0.0)
+        .edge("no curvature, nothing absorbed", |(l, k, g)| (l == 0.0 || k == 0.0) && g == 0.0)
+        .edge("a hollow", |(l, k, _)| l > 0.0 && k < 0.0)
+        .edge("infinite curvature", |(l, k, _)| l > 0.0 && k.is_infinite())
+        .edge("nothing absorbed", |(l, k, g)| l * k.abs() > 0.01 && g == 0.0)
+        .edge("nothing scattered", |(l, k, g)| l * k.abs() > 0.01 && g == 1.0)
+        .invariant("in its ranges", |_, drift: CdrfDrift| {
+            let CdrfDrift { sigma, shift, share } = drift;
+            let sound = (0.0..=1.5).contains(&sigma) && shift.abs() < 0.886 && (0.239..=1.0).contains(&share);
+            if sound { Ok(()) } else { Err(format!("{drift:?}")) }
+        })
+        .pair(
+            "a hollow against a ridge",
+            |(l, k, g)| (l, -k, g),
+            |_, ridge: CdrfDrift, hollow: CdrfDrift| {
+                near("sum of the shifts", f64::from(ridge.shift + hollow.shift), 0.0, 0.0)?;
+                near("difference of the widths", f64::from(ridge.sigma - hollow.sigma), 0.0, 0.0)
+            },
+        )
+        .build(),
+        formula(M, "cdrf_shifted", mirror::shifted, oracle::shifted, |draws| {
+            let shift = match draws.below(4) {
+                0 => draws.pick(&[0.0, 0.9, -0.9, 1.5, -1.5]),
+                1 => draws.signed(-60, 0),
+                _ => draws.between(-0.9, 0.9),
+            };
+            let near_zero = draws.below(4) == 0;
+            (if near_zero { -shift + draws.signed(-24, -4) } else { cosine(draws) }, shift)
+        })
+        .edge("no shift", |(_, b)| b == 0.0)
+        .edge("facing the light", |(c, b)| c == 1.0 && b < -0.5)
+        .edge("facing away", |(c, b)| c == -1.0 && b > 0.5)
+        .edge("moved to the terminator", |(c, b)| b.abs() > 0.1 && (c + b).abs() < 1e-3)
+        .edge("out of range", |(c, b)| c.abs() > 1.0 || b.abs() > 0.9)
+        .invariant(
+            "a cosine",
+            |_, cosine: f32| {
+                if (-1.0..=1.0).contains(&cosine) { Ok(()) } else { Err(format!("cosine {cosine}")) }
+            },
+        )
+        .pair(
+            "darker further from the light",
+            |(c, b)| (turned(c, 0.01), b),
+            |_, one: f32, other: f32| darker(one, other, 1.1e-6),
+        )
         .build(),
     ]
 }

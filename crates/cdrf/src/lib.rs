@@ -54,6 +54,49 @@ pub fn sigma_naive(sigma0: f32, curvature: f32) -> f32 {
     sigma0 * curvature
 }
 
+/// Returns the width of the Gaussian, in radians, by the power law of random walks through spheres.
+pub fn sigma_power(mean_free_path: f32, curvature: f32) -> f32 {
+    let turn = sigma(mean_free_path, curvature).max(1e-12);
+    1.8 * (0.59 * turn.log2()).exp2()
+}
+
+/// Returns the power law of the plain product; a naive form.
+pub fn sigma_power_naive(mean_free_path: f32, curvature: f32) -> f32 {
+    1.8 * (mean_free_path * curvature).powf(0.59)
+}
+
+/// What scattering does to the light on a curved surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CdrfDrift {
+    /// Width of the Gaussian in radians.
+    pub sigma: f32,
+    /// Shift of the cosine, for [`shifted`].
+    pub shift: f32,
+    /// Factor of the reflectance.
+    pub share: f32,
+}
+
+/// Returns the drift of light below a curved surface; `gamma` is the root of 1 - albedo.
+pub fn drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
+    let turn = (finite(mean_free_path).max(0.0) * finite(curvature)).clamp(-1.0, 1.0);
+    let g = gamma.clamp(0.0, 1.0);
+    let magnitude = turn.abs();
+    let sideways = 1.9 * turn / (1.0 + 3.2 * g);
+    let absorbed = (g * g + 0.041 * magnitude).max(CDRF_SMALLEST);
+    CdrfDrift {
+        sigma: 1.5 * magnitude,
+        shift: sideways / (1.0 + sideways * sideways).sqrt(),
+        share: (1.0 / (1.0 + 0.13 * magnitude * (magnitude / absorbed))).min(1.0),
+    }
+}
+
+/// Returns the cosine of the light where the light that leaves here has entered.
+pub fn shifted(cosine: f32, shift: f32) -> f32 {
+    let c = cosine.clamp(-1.0, 1.0);
+    let b = shift.clamp(-0.9, 0.9);
+    ((c + b) / (1.0 + b * c)).clamp(-1.0, 1.0)
+}
+
 /// Returns the angle in radians from its sine.
 pub fn arcsine(sine: f32) -> f32 {
     let a = sine.abs().min(1.0);

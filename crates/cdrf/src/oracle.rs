@@ -148,6 +148,47 @@ pub fn sigma_naive(sigma0: f64, curvature: f64) -> f64 {
     sigma(sigma0, curvature)
 }
 
+/// Returns the power law of the product, at least of 1e-12.
+pub fn sigma_power(mean_free_path: f64, curvature: f64) -> f64 {
+    1.8 * sigma(mean_free_path, curvature).max(f64::from(1e-12f32)).powf(0.59)
+}
+
+/// Returns the power law, which is right for valid values.
+pub fn sigma_power_naive(mean_free_path: f64, curvature: f64) -> f64 {
+    sigma_power(mean_free_path, curvature)
+}
+
+/// What scattering does to the light on a curved surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CdrfDrift {
+    /// Width of the Gaussian in radians.
+    pub sigma: f64,
+    /// Shift of the cosine.
+    pub shift: f64,
+    /// Factor of the reflectance.
+    pub share: f64,
+}
+
+/// Takes the shift as the sine of an angle whose tangent is the way sideways, and the share as a
+/// quotient of what is absorbed and all.
+pub fn drift(mean_free_path: f64, curvature: f64, gamma: f64) -> CdrfDrift {
+    let magnitude = sigma(mean_free_path, curvature).min(1.0);
+    let gamma = gamma.clamp(0.0, 1.0);
+    let sideways = 1.9 * magnitude / (1.0 + 3.2 * gamma);
+    let absorbed = gamma.powi(2) + 0.041 * magnitude;
+    CdrfDrift {
+        sigma: 1.5 * magnitude,
+        shift: if curvature < 0.0 { -1.0 } else { 1.0 } * sideways.atan().sin(),
+        share: if magnitude == 0.0 { 1.0 } else { absorbed / (absorbed + 0.13 * magnitude.powi(2)) },
+    }
+}
+
+/// Adds the rapidities of which cosine and shift are the hyperbolic tangents.
+pub fn shifted(cosine: f64, shift: f64) -> f64 {
+    let most = f64::from(0.9f32);
+    (cosine.clamp(-1.0, 1.0).atanh() + shift.clamp(-most, most).atanh()).tanh()
+}
+
 /// Returns the arcsine of the standard library.
 pub fn arcsine(sine: f64) -> f64 {
     sine.clamp(-1.0, 1.0).asin()

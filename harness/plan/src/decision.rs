@@ -137,6 +137,7 @@ impl Case<'_> {
             Effect::BoundsTrace => self.bounds_trace(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
+            Effect::HalfSpace => self.half_space(),
             Effect::OpticalPath => self.optical_path(),
             Effect::Diffusion => self.diffusion(),
             Effect::Surface => {
@@ -328,6 +329,28 @@ impl Case<'_> {
             }
             Rung::OpticalPath(_) | Rung::Diffusion(_) => off("light is followed through the body instead"),
             _ => off("nothing inside scatters"),
+        }
+    }
+
+    fn half_space(&self) -> Answer {
+        match self.rung {
+            Rung::Diffusion(_) => return off("part of diffusion"),
+            Rung::Diffuse(_) | Rung::OpticalPath(_) if !self.material.scatters() => {
+                return off("nothing inside scatters");
+            }
+            Rung::Diffuse(Reflectance::Blur) => return off("the texture holds light of every direction"),
+            Rung::Diffuse(_) | Rung::OpticalPath(_) => {}
+            _ => return off(self.not_clear()),
+        }
+        if !self.request.half_space && self.request.rung != Rung::ByMaterial {
+            return off("a rung is asked for: --with half_space");
+        }
+        if !self.request.half_space && self.request.quality == Quality::Fast {
+            return off("quality fast");
+        }
+        match super::thickness::albedo(self.material) {
+            Some(albedo) => on(format!("albedo {}", triple(albedo))),
+            None => on(format!("base color {}", triple(self.material.base_color))),
         }
     }
 

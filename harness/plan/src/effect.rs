@@ -63,6 +63,8 @@ effects! {
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.
     TextureDiffusion = "texture_diffusion", "EFFECT_TEXTURE_DIFFUSION";
+    /// The law by which a half space of scattering matter sends light back, in place of Lambert's.
+    HalfSpace = "half_space", "EFFECT_HALF_SPACE";
     /// Light through a body, along the path of least cost.
     OpticalPath = "optical_path", "EFFECT_OPTICAL_PATH";
     /// Light through a body, by the diffusion of its fluence.

@@ -56,6 +56,8 @@ pub struct Request<'a> {
     pub scattering: Option<Scattering>,
     /// Whether lights cast shadows on bodies that are drawn by their surface alone.
     pub shadows: bool,
+    /// Whether scattering bodies follow the law of a half space under a named rung too.
+    pub half_space: bool,
     /// Whether facets' edges inside clear stones are smoothed from one sample per pixel.
     pub footprint: bool,
     /// What light that leaves a clear stone meets; `None` lets the quality decide.
@@ -77,6 +79,7 @@ impl Request<'_> {
             without: Effects::NONE,
             scattering: None,
             shadows: false,
+            half_space: false,
             footprint: false,
             outside: None,
             environment: &Environment::Studio,

@@ -68,7 +68,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 36] = [
+pub const NAMES: [&str; 38] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -98,6 +98,8 @@ pub const NAMES: [&str; 36] = [
     "accurate",
     "quadrature",
     "spherical",
+    "power",
+    "drift",
     "blur",
     "paper-64",
     "ping-pong-26-64",
@@ -109,7 +111,7 @@ pub const NAMES: [&str; 36] = [
 /// The grammar of rung names, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+split|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
-     quadrature, spherical, blur, or diffusion-CELLS with 16 to 128 cells, such as diffusion-64, or \
+     quadrature, spherical, power, drift, blur, or diffusion-CELLS with 16 to 128 cells, such as diffusion-64, or \
      (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 cells, such as godunov-64; \
      for both reference";
 

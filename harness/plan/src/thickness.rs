@@ -98,6 +98,11 @@ fn inwards(bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option<f32> {
     (normal != Vec3::ZERO && traversal::met(&hit)).then_some(hit.distance)
 }
 
+/// Returns the width of [`sigma0_of`] in mean free paths for an albedo.
+fn widths(albedo: Vec3) -> Vec3 {
+    0.5 + 4.3 * albedo
+}
+
 /// Returns the width that spreads light over a curved body of this medium, for red, green and blue
 /// in units of length. It replaces `sigma0` if a material has none.
 ///
@@ -108,9 +113,29 @@ pub fn sigma0_of(medium: &Medium) -> Vec3 {
     let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());
     let of = |channel: usize| {
         let free = 1.0 / extinction[channel];
-        if free.is_finite() { (0.5 + 4.3 * scattering[channel] * free) * free } else { 0.0 }
+        if free.is_finite() { widths(scattering * free)[channel] * free } else { 0.0 }
     };
     Vec3::new(of(0), of(1), of(2))
+}
+
+/// Returns the share of light that one scattering leaves, for red, green and blue, as if scattering were
+/// isotropic; `None` without a medium.
+#[must_use]
+pub fn albedo(material: &Material) -> Option<Vec3> {
+    let medium = material.medium.as_ref()?;
+    let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());
+    Some(Vec3::select(extinction.cmpgt(Vec3::ZERO), scattering / extinction, Vec3::ZERO))
+}
+
+/// Returns the transport mean free path for red, green and blue, in units of length: the medium's, or else
+/// that of the matter that has the material's base color and `sigma0`; `None` if it has neither.
+#[must_use]
+pub fn free_path(material: &Material) -> Option<Vec3> {
+    if let Some(medium) = &material.medium {
+        return Some(medium.transport_extinction().recip());
+    }
+    let gamma = material.base_color.map(lapidary_half_space::gamma_of_reflectance);
+    Some(material.sigma0? / widths(Vec3::ONE - gamma * gamma))
 }
 
 /// Returns the material's own `sigma0`, or [`sigma0_of`] its medium; `None` if it has neither.

@@ -44,6 +44,7 @@ mod record;
 mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
+mod scattering_law;
 mod screen;
 mod settings;
 pub mod shader;

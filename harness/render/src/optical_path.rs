@@ -9,6 +9,7 @@ use super::lighting::Lighting;
 use super::mesh_buffers::{MeshBuffers, ShapeBuffers, Shapes};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
+use super::scattering_law::ScatteringLaw;
 use super::stage::Stage;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
@@ -19,7 +20,7 @@ use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
 use glam::Vec3;
 use lapidary_gpu::GpuError;
-use lapidary_plan::{Effect, Note};
+use lapidary_plan::{Decisions, Effect, Note};
 use lapidary_scene::solver::Paths;
 use lapidary_scene::{Bounds, Density, Material, Object};
 use seeds::{Seeded, Seeds};
@@ -111,7 +112,7 @@ impl Add<'_> {
         drawn: &Drawn<'_>,
         (shapes, maps): (&Shapes, &mut ReflectiveShadowMaps),
     ) -> Result<(Body, Option<BodyPaths>), RenderError> {
-        let Drawn { object: Object { mesh, material, .. }, name, .. } = drawn;
+        let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
         let extinction = extinction(material, self.settings);
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.paths.cells);
         let shape = shapes.of(builder, name, drawn.object)?;
@@ -121,7 +122,7 @@ impl Add<'_> {
             Some(seeds) => Some(self.paths(builder, drawn, seeds, grid, extinction, shape)?),
             None => None,
         };
-        let record = builder.record("material", record_of(grid, material, extinction, self.largest));
+        let record = builder.record("material", record_of(grid, (material, decisions), extinction, self.largest));
         let MeshBuffers { shape: ShapeBuffers { positions, indices, vertices }, normals } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
@@ -191,11 +192,17 @@ fn extinction(material: &Material, settings: &Settings) -> Vec3 {
 }
 
 /// Fills `OpticalPathBody` of the recipe.
-fn record_of(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Record {
+fn record_of(
+    grid: VoxelGrid,
+    (material, decisions): (&Material, &Decisions),
+    extinction: Vec3,
+    largest: Vec3,
+) -> Record {
     let record = Record::new("OpticalPathBody").within("grid", |record| grid.fill(record));
     let record = record.with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("extinction", extinction).with("alpha", material.roughness * material.roughness);
-    record.with("largest", largest)
+    let record = record.with("largest", largest);
+    record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record))
 }
 
 impl OpticalPaths {

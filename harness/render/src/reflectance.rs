@@ -10,10 +10,19 @@ pub(super) fn form(reflectance: Reflectance) -> Option<u32> {
         Reflectance::Wrap => Some(0),
         Reflectance::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
         Reflectance::Table(_, Format::R32Float) => Some(2),
-        Reflectance::Cheap => Some(3),
+        Reflectance::Cheap | Reflectance::Power | Reflectance::Drift => Some(3),
         Reflectance::Accurate => Some(4),
         Reflectance::Quadrature => Some(5),
         Reflectance::Spherical => Some(6),
+    }
+}
+
+/// Returns `SPREAD_FORM` of the recipe.
+pub(super) fn spread(reflectance: Reflectance) -> u32 {
+    match reflectance {
+        Reflectance::Power => 1,
+        Reflectance::Drift => 2,
+        _ => 0,
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Settings {
     pub scattering: Option<Scattering>,
     /// Whether lights cast shadows on bodies that are drawn by their surface alone.
     pub shadows: bool,
+    /// Whether scattering bodies follow the law of a half space under a named rung too.
+    pub half_space: bool,
     /// Options for clear stones.
     pub gem: GemOptions,
     /// Options for scattering bodies drawn by their curvature.
@@ -197,6 +199,7 @@ impl Settings {
             without: Effects::NONE,
             scattering: None,
             shadows: false,
+            half_space: false,
             gem: GemOptions::default(),
             diffuse: DiffuseOptions::default(),
             optical_path: OpticalPathOptions::default(),
@@ -216,6 +219,7 @@ impl Settings {
             without: self.without,
             scattering: self.scattering,
             shadows: self.shadows,
+            half_space: self.half_space,
             footprint: self.gem.footprint,
             outside: self.gem.outside,
             environment: &self.environment,

@@ -5,7 +5,8 @@ use super::blur::Blur;
 use super::lighting::Lighting;
 use super::mesh_buffers::vertices as mesh_vertices;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
-use super::reflectance::form;
+use super::reflectance::{form, spread};
+use super::scattering_law::ScatteringLaw;
 use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
@@ -92,6 +93,7 @@ pub(crate) fn constants(
     let mut constants = decisions.constants();
     constants.extend([
         ("CDRF_FORM", f64::from(form(reflectance).unwrap_or_default())),
+        ("SPREAD_FORM", f64::from(spread(reflectance))),
         ("CURVATURE_FORM", f64::from(settings.diffuse.curvature.form())),
         ("ENVIRONMENT_AT_VERTICES", f64::from(u8::from(settings.diffuse.environment_at_vertices))),
     ]);
@@ -102,7 +104,7 @@ pub(crate) fn constants(
 fn add(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
-    Drawn { object, name, .. }: &Drawn<'_>,
+    Drawn { object, name, decisions }: &Drawn<'_>,
     reflectance: Reflectance,
     (light, constants): (Light<'_>, &[(&str, f64)]),
 ) -> Result<(Body, Option<Blur>), RenderError> {
@@ -120,7 +122,7 @@ fn add(
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
-    let record = builder.record("material", record_of(material));
+    let record = builder.record("material", record_of(material, decisions));
     let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
@@ -163,17 +165,23 @@ fn add(
 }
 
 /// Fills `CdrfMaterial` of the recipe.
-fn record_of(material: &Material) -> Record {
+fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let sigma0 = safe_sigma0(material);
     let record = Record::new("CdrfMaterial").with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
-    record.with("alpha", material.roughness * material.roughness)
+    let record = record.with("alpha", material.roughness * material.roughness);
+    let record = record.with("free_path", safe(thickness::free_path(material)));
+    record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record))
 }
 
 /// Returns the material's widths, made safe.
 fn safe_sigma0(material: &Material) -> Vec3 {
-    let sigma0 = thickness::sigma0(material).unwrap_or_default();
-    Vec3::from_array(sigma0.to_array().map(|sigma0| lapidary_cdrf::sigma(sigma0, 1.0)))
+    safe(thickness::sigma0(material))
+}
+
+/// Returns lengths that no product with a curvature makes infinite or a NaN; 0 for none.
+fn safe(lengths: Option<Vec3>) -> Vec3 {
+    lengths.unwrap_or_default().map(|length| lapidary_cdrf::sigma(length, 1.0))
 }
 
 /// Bakes the table of a material's channels.

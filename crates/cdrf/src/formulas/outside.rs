@@ -47,6 +47,9 @@ fn reflectances() -> Vec<Promise> {
     vec![
         accurate("cdrf_finite", "nothing; a subnormal may count as zero", one_bits),
         accurate("cdrf_sigma", "nothing", |draws| (any_bits(draws), any_bits(draws))),
+        accurate("cdrf_sigma_power", "nothing", |draws| (any_bits(draws), any_bits(draws))),
+        accurate("cdrf_drift", "nothing", |draws| (any_bits(draws), any_bits(draws), any_finite(draws))),
+        accurate("cdrf_shifted", "nothing", two),
         accurate("cdrf_arcsine", "nothing", one),
         holds(
             "cdrf_deviations",

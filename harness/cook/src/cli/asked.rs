@@ -26,10 +26,10 @@ pub(super) struct Asked {
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
-    /// Draw effects that no material calls for. shadow: lights cast shadows on everything that is
-    /// drawn by its surface alone. cdrf, optical_path, diffusion: draw all scattering materials by
+    /// Draw effects that a named rung leaves out. shadow: lights cast shadows on everything that is
+    /// drawn by its surface alone. half_space: scattering bodies follow the law of a half space. cdrf, optical_path, diffusion: draw all scattering materials by
     /// this technique, whatever their thickness relative to the mean free path.
-    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW])]
+    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW, HALF_SPACE])]
     with: Vec<String>,
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
@@ -43,6 +43,7 @@ const CDRF: &str = "cdrf";
 const OPTICAL_PATH: &str = "optical_path";
 const DIFFUSION: &str = "diffusion";
 const SHADOW: &str = "shadow";
+const HALF_SPACE: &str = "half_space";
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
@@ -89,7 +90,7 @@ impl Asked {
             }
             (one, _) => one.map(|(_, scattering)| scattering),
         };
-        let shadows = self.is_with(SHADOW);
+        let (shadows, half_space) = (self.is_with(SHADOW), self.is_with(HALF_SPACE));
         let (width, height) = self.size;
         let (rung, quality) = (self.rung(), self.quality.unwrap_or_default());
         if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial) {
@@ -97,7 +98,15 @@ impl Asked {
                 "--rung {rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
             )));
         }
-        let settings = Settings { rung, quality, scattering, shadows, environment, ..Settings::of_size(width, height) };
+        let settings = Settings {
+            rung,
+            quality,
+            scattering,
+            shadows,
+            half_space,
+            environment,
+            ..Settings::of_size(width, height)
+        };
         self.refuse_what_is_ignored(scene, &settings)?;
         Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
     }
@@ -135,8 +144,11 @@ impl Asked {
         if settings.shadows {
             refuse_without_meaning(scene, settings, Effect::Shadow, &format!("--with {SHADOW}"))?;
         }
+        if settings.half_space {
+            refuse_without_meaning(scene, settings, Effect::HalfSpace, &format!("--with {HALF_SPACE}"))?;
+        }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
-        let technique = self.with.iter().find(|name| *name != SHADOW);
+        let technique = self.with.iter().find(|name| ![SHADOW, HALF_SPACE].contains(&name.as_str()));
         if let Some(name) = technique.filter(|_| !scatters || settings.rung != Rung::ByMaterial) {
             let reason = if scatters { "a rung is asked for" } else { "nothing there has scattering and absorption" };
             return Err(Failure(format!(

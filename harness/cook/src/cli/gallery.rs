@@ -62,7 +62,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         bar.inc(1);
     }
     for reference in &WALKED {
-        let path = rendered.path().join(format!("{}_walked.png", reference.scene));
+        let path = rendered.path().join(format!("{}_walked.png", reference.name()));
         file::write(&reference.picture(gpu)?, &path)?;
         pictures.push(Picture {
             title: reference.title.to_owned(),

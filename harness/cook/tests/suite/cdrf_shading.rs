@@ -258,6 +258,8 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
         "accurate",
         "quadrature",
         "spherical",
+        "power",
+        "drift",
         "blur",
     ];
     let by_rung = rungs.map(|rung| (rung, Curvature::Mean));
@@ -292,7 +294,7 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
             .collect();
         let picture = draw(
             &scene.seen_from(90.0, 0.0),
-            &Settings { without: Effects::SHEEN, diffuse: by(curvature), ..settings(rung) },
+            &Settings { without: Effects::SHEEN, half_space: true, diffuse: by(curvature), ..settings(rung) },
         );
         let mut seen = 0;
         for pixel in picture.linear.iter().filter(|pixel| pixel[3] == 1.0) {
@@ -383,6 +385,155 @@ fn bad_input_is_refused() {
     scene.objects[0].material.medium = None;
     let stone = Scene::named("brilliant").expect("built in");
     assert!(matches!(refused(&stone, "cheap"), RenderError::NoSigma0 { .. }));
+}
+
+/// An environment without light.
+fn night() -> Environment {
+    Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[0.0, 0.0, 0.0, 1.0]; 8] })
+}
+
+/// A ball that spreads no light, of skin's matter, and settings that draw it by the law of a half space:
+/// index-matched, or polished with a boundary, in which nothing is reflected.
+fn half_spaces() -> [(Scene, Settings, f64); 2] {
+    let scene = ball(10.0, Vec3::ZERO);
+    let mut polished = scene.clone();
+    polished.objects[0].material.roughness = 0.0;
+    let index = f64::from(polished.objects[0].material.ior);
+    let law = Settings { half_space: true, ..settings("lambert") };
+    let dark = Effects::of(&[Effect::Environment]);
+    let behind = Settings { without: dark, environment: night(), ..law.clone() };
+    [(scene, law, 1.0), (polished, behind, index)]
+}
+
+/// The radiance at each pixel of a ball is that of the law, between the boundary's shares that pass.
+#[test]
+fn a_surface_sends_back_what_the_law_of_a_half_space_says() {
+    use lapidary_fresnel::oracle::dielectric;
+    use lapidary_half_space as half_space;
+    for (scene, settings, index) in half_spaces() {
+        let material = &scene.objects[0].material;
+        let albedo = lapidary_plan::thickness::albedo(material).expect("a medium");
+        let eye = scene.camera.eye.as_dvec3();
+        let edge = half_space::edge(index as f32);
+        let (mut worst, mut brightest) = (0.0f64, 0.0f64);
+        for (position, found) in on_the_ball(&scene, &draw(&scene, &settings)) {
+            let (normal, toward) = (position.normalize(), (eye - position).normalize());
+            let mut truth = DVec3::ZERO;
+            for light in &scene.lights {
+                let Arrival { direction, irradiance, .. } = light.arrival(position);
+                let (seen, lit) = (normal.dot(toward), normal.dot(direction).max(0.0));
+                for channel in 0..3 {
+                    let gamma = half_space::gamma(albedo[channel], 0.0);
+                    let gain = half_space::gain(gamma, edge);
+                    let law = half_space::dielectric(seen as f32, lit as f32, gamma, index as f32, edge, gain);
+                    let color = f64::from(material.base_color[channel] / half_space::reflectance(gamma));
+                    let passed = (1.0 - dielectric(seen, index)) * (1.0 - dielectric(lit, index));
+                    truth[channel] += color * passed * lit * f64::from(law) * irradiance[channel];
+                }
+            }
+            worst = larger(worst, largest((found - truth).abs().to_array()));
+            brightest = larger(brightest, truth.max_element());
+        }
+        println!("index {index}: off by {worst:.1e} where the brightest is {brightest:.2}");
+        // Near the terminator the boundary's share rises with a slope of ten.
+        assert!(worst < 10.0 * MESH * brightest, "{index}: {worst} {brightest}");
+        assert_ne!(
+            draw(&scene, &settings).linear,
+            draw(&scene, &Settings { half_space: false, ..settings.clone() }).linear
+        );
+    }
+}
+
+/// Under light from everywhere, as suns or as an environment, a surface sends back its base color in the
+/// mean over all directions; with a boundary, what the boundary lets through.
+#[test]
+fn the_law_of_a_half_space_keeps_the_energy() {
+    use lapidary_half_space as half_space;
+    const SUNS: u32 = 600;
+    const BINS: usize = 16;
+    let suns = (0..SUNS).map(|sun| {
+        // Fibonacci's lattice on the sphere.
+        let height = 1.0 - (2.0 * sun as f32 + 1.0) / SUNS as f32;
+        let azimuth = 2.399_963_2 * sun as f32;
+        let across = (1.0 - height * height).sqrt();
+        let toward = Vec3::new(across * azimuth.cos(), height, across * azimuth.sin());
+        Light::Directional { toward, irradiance: Vec3::splat(4.0 * std::f32::consts::PI / SUNS as f32) }
+    });
+    let suns: Vec<Light> = suns.collect();
+    let white = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
+    for (scene, settings, index) in half_spaces() {
+        let material = &scene.objects[0].material;
+        let albedo = lapidary_plan::thickness::albedo(material).expect("a medium");
+        let expected = |channel: usize| {
+            let gamma = half_space::gamma(albedo[channel], 0.0);
+            let edge = half_space::edge(index as f32);
+            let entered = half_space::entered(gamma, edge) * (1.0 - edge * edge) * (index * index) as f32;
+            f64::from(material.base_color[channel] * entered / half_space::reflectance(gamma))
+        };
+        let by_suns = (Scene { lights: suns.clone(), ..scene.clone() }, settings.clone());
+        let without = Effects::SHEEN;
+        let around = Settings { without, environment: white.clone(), ..settings.clone() };
+        let by_environment = (Scene { lights: Vec::new(), ..scene.clone() }, around);
+        // The environment would also be reflected by a boundary, and is compared without one.
+        let cases = if index == 1.0 { vec![by_suns, by_environment] } else { vec![by_suns] };
+        for (scene, settings) in cases {
+            let eye = scene.camera.eye.as_dvec3();
+            // Equal intervals of the squared cosine have equal weights; the outermost is hardly seen.
+            let mut bins = [(DVec3::ZERO, 0.0); BINS];
+            for (position, found) in on_the_ball(&scene, &draw(&scene, &settings)) {
+                let cosine = position.normalize().dot((eye - position).normalize());
+                let (sum, count) = &mut bins[((cosine * cosine * BINS as f64) as usize).min(BINS - 1)];
+                *sum += found;
+                *count += 1.0;
+            }
+            assert!(bins.iter().all(|(_, count)| *count > 20.0), "{bins:?}");
+            let mean = bins.iter().map(|(sum, count)| *sum / *count).sum::<DVec3>() / BINS as f64;
+            for channel in 0..3 {
+                let share = mean[channel] / expected(channel);
+                println!("index {index}, {} lights, channel {channel}: {share:.4} of the light", scene.lights.len());
+                assert!((share - 1.0).abs() < 0.01, "{index}: {mean} {channel}");
+            }
+        }
+    }
+}
+
+/// On a ball, light drifts away from the sun: the drift brightens the lit side beside the terminator and
+/// all of the dark, where the widths alone take as much from the lit side as they add to the dark.
+#[test]
+fn the_drift_and_the_power_law_are_those_of_the_module() {
+    use lapidary_cdrf as cdrf;
+    let mut scene = ball(10.0, Vec3::ONE);
+    scene.lights.truncate(1);
+    let material = scene.objects[0].material.clone();
+    let albedo = lapidary_plan::thickness::albedo(&material).expect("a medium");
+    let path = lapidary_plan::thickness::free_path(&material).expect("a medium");
+    for rung in ["power", "drift"] {
+        for curvature in [Curvature::Mean, Curvature::Vertex] {
+            let mut worst = 0.0f64;
+            for (position, found) in
+                on_the_ball(&scene, &draw(&scene, &Settings { diffuse: by(curvature), ..settings(rung) }))
+            {
+                let Arrival { direction, irradiance, .. } = scene.lights[0].arrival(position);
+                let cosine = position.normalize().dot(direction) as f32;
+                for channel in 0..3 {
+                    let reflectance = if rung == "power" {
+                        cdrf::cheap(cosine, cdrf::sigma_power(path[channel], 0.1))
+                    } else {
+                        let drift = cdrf::drift(path[channel], 0.1, (1.0 - albedo[channel]).sqrt());
+                        drift.share * cdrf::cheap(cdrf::shifted(cosine, drift.shift), drift.sigma)
+                    };
+                    let truth = f64::from(material.base_color[channel] * reflectance) * irradiance[channel] * FRAC_1_PI;
+                    worst = larger(worst, (found[channel] - truth).abs());
+                }
+            }
+            println!("{rung}, curvature {}: off by {worst:.1e}", curvature.name());
+            assert!(worst < 1.2 * MESH, "{rung} {curvature:?}: {worst}");
+        }
+    }
+    // Without a medium, the mean free path is that of the matter with this base color and sigma0.
+    let none = Material { medium: None, ..material };
+    let derived = lapidary_plan::thickness::free_path(&none).expect("sigma0");
+    assert!((derived * (0.5 + 4.3 * albedo) - 1.0).abs().max_element() < 0.01, "{derived}");
 }
 
 /// With the best single exposure for each, the reflectance is nearer to the random walks than

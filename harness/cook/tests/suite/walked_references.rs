@@ -28,7 +28,7 @@ fn the_committed_references_are_walked_again() {
             origin: reference.origin,
             seed: 99,
             environment: None,
-            boundary: mesh::Boundary::Matched,
+            boundary: reference.boundary,
         };
         let again = mesh::render(&scene, &few, &|_, _| {}).expect("walked");
         assert!(committed.iter().flatten().all(|value| value.is_finite() && *value >= 0.0), "{}", reference.scene);

@@ -21,12 +21,16 @@ pub enum Reflectance {
     Quadrature,
     /// The energy-conserving form over the sphere.
     Spherical,
+    /// The cheap closed form with the width of the power law that random walks through spheres follow.
+    Power,
+    /// The same with the drift of light below a curved surface, and its width.
+    Drift,
     /// Irradiance blurred in the mesh's texture, the only rung that uses it.
     Blur,
 }
 
 /// All variants, with the names of their rungs.
-pub const REFLECTANCES: [(&str, Reflectance); 11] = [
+pub const REFLECTANCES: [(&str, Reflectance); 13] = [
     ("lambert", Reflectance::Lambert),
     ("lambert-shadowed", Reflectance::LambertShadowed),
     ("wrap", Reflectance::Wrap),
@@ -37,6 +41,8 @@ pub const REFLECTANCES: [(&str, Reflectance); 11] = [
     ("accurate", Reflectance::Accurate),
     ("quadrature", Reflectance::Quadrature),
     ("spherical", Reflectance::Spherical),
+    ("power", Reflectance::Power),
+    ("drift", Reflectance::Drift),
     ("blur", Reflectance::Blur),
 ];
 

@@ -99,11 +99,11 @@ pub fn function(gpu: &Gpu, reflectance: Reflectance) -> Result<Option<Function>,
             let table = baked(gpu, side, format)?;
             Box::new(move |cosine, sigma| table.lookup(cosine, sigma).x)
         }
-        Reflectance::Cheap => Box::new(mirror::cheap),
+        Reflectance::Cheap | Reflectance::Power => Box::new(mirror::cheap),
         Reflectance::Accurate => Box::new(mirror::accurate),
         Reflectance::Quadrature => Box::new(mirror::quadrature),
         Reflectance::Spherical => Box::new(mirror::spherical),
-        Reflectance::Blur => return Ok(None),
+        Reflectance::Drift | Reflectance::Blur => return Ok(None),
     }))
 }
 

@@ -4,6 +4,7 @@
 
 pub mod error;
 mod frames;
+mod law;
 mod scenes;
 mod shader;
 mod tables;
@@ -97,6 +98,7 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
     }
     report.rows.extend(convolution.distance(lapidary_cdrf::spherical).rows(SPHERICAL, CIRCULAR));
     scenes::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks", done, total))?;
+    law::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks, by law", done, total))?;
     Ok(report)
 }
 

@@ -1,5 +1,6 @@
 //! The reflectance ladder's tables and its plot.
 
+use super::law;
 use super::scenes::{self, SCENES, SIDE};
 use super::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
 use crate::cost::plot::{self, Axis, COLORS, Corner, Dot, Marker, Plot, Series};
@@ -31,6 +32,9 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
             &VIEWS[2..],
         ),
         walked(report),
+        law::table(report),
+        law::zones_table(report),
+        law::goals(report),
         goals(report),
         paper(report),
     ]
