@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 5e4e8aa093576b90
+// Version: 0.2.0, hash f1b07d16289f0862
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function": max(cos t, 0) convolved with a Gaussian of sigma =
 //   sigma0 curvature. The closed forms are derived in docs/cdrf.md. Abramowitz and Stegun,

@@ -1,6 +1,6 @@
 // diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 446977fb654b5c01
+// Version: 0.2.0, hash 0241b9edf36cc98f
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,

@@ -509,7 +509,7 @@ impl Case<'_> {
             Rung::Diffusion(_) if self.material.ior == 1.0 => off("ior 1: nothing reflects"),
             Rung::Diffusion(_) => on(format!("ior {}", short(self.material.ior))),
             Rung::OpticalPath(_) => off("a path's cost knows no boundary"),
-            Rung::Diffuse(_) if self.material.scatters() => off("part of the base colour"),
+            Rung::Diffuse(_) if self.material.scatters() => off("part of half_space, or of the base colour"),
             _ => off("nothing inside scatters"),
         }
     }
