@@ -164,8 +164,8 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         Case {
             name: "wax_ring, spots for suns",
             scene: spotlit("wax_ring")?,
-            settings: settings("accurate"),
-            effects: &[Effect::Cdrf, Effect::Environment, Effect::Microfacet, Effect::Spot],
+            settings: Settings { half_space: true, ..settings("accurate") },
+            effects: &[Effect::Cdrf, Effect::HalfSpace, Effect::Environment, Effect::Microfacet, Effect::Spot],
             stands_on: &[],
         },
         Case {

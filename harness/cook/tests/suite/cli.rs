@@ -61,8 +61,8 @@ fn plan_prints_one_json_document() {
         assert!(number("times_fast") == measured && row["error_measure"].is_string() == measured, "{row}");
     }
     assert_eq!(on("slate"), ["shadow", "colored_shadow", "environment", "microfacet"]);
-    assert_eq!(on("wax"), ["cdrf", "shadow", "colored_shadow", "environment", "microfacet"]);
-    assert_eq!(on("marble"), ["diffusion", "environment", "microfacet"]);
+    assert_eq!(on("wax"), ["cdrf", "half_space", "shadow", "colored_shadow", "environment", "microfacet"]);
+    assert_eq!(on("marble"), ["diffusion", "environment", "dielectric", "microfacet"]);
     let pipelines: BTreeSet<String> = rows("pipelines").iter().map(|row| text(row, "name")).collect();
     assert!(rows("pipelines").iter().all(|row| row["overrides"].is_object() && !text(row, "recipe").is_empty()));
     let resources: BTreeSet<String> = rows("resources").iter().map(|row| text(row, "name")).collect();

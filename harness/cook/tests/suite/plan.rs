@@ -284,6 +284,7 @@ fn cases() -> Vec<Case> {
                 vec!["texture_irradiance", "texture_diffusion"],
             ],
         ),
+        case(Effect::HalfSpace, one("wax"), Settings { half_space: true, ..of_rung("accurate") }, none()),
         case(
             Effect::OpticalPath,
             one("dragon"),
