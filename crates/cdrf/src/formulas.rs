@@ -228,7 +228,8 @@ fn drifts() -> Vec<Formula> {
                 },
             )
             .hard_case("no curvature", (1.0, 0.0), (&[0.0], LEAST), (NAIVE, 0.0))
-            .hard_case("curvature a NaN", (1.0, f32::NAN), (&[0.0], LEAST), (NAIVE, f64::INFINITY))
+            // What the plain power makes of a NaN is each device's own.
+            .hard_case("curvature a NaN", (1.0, f32::NAN), (&[0.0], LEAST), (NAIVE, 0.0))
             .hard_case("a hollow", (0.25, -2.0), (&[1.8 * 0.5f64.powf(0.59)], 6e-5), (NAIVE, f64::INFINITY))
             .hard_case("huge curvature", (1e30, 1e30), (&[1.8 * 1e36f64.powf(0.59)], 2e17), (NAIVE, f64::INFINITY))
             .build(),

@@ -155,6 +155,7 @@ fn cases() -> Vec<Case> {
         "large triangles",
         "large triangles of cells",
         "level",
+        "light that enters",
         "loads",
         "losses",
         "losses of level 1",
