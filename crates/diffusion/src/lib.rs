@@ -34,6 +34,8 @@ pub const DIFFUSION_LEAST_WEIGHT: f32 = 1e-4;
 pub const DIFFUSION_LEAST_VARIANCE: f32 = 1e-4;
 /// The least distance of a node's depth from the mean, in spacings.
 pub const DIFFUSION_LEAST_STEP: f32 = 0.01;
+/// By how much of itself a node's weight may change over the nodes' range of depths.
+pub const DIFFUSION_STEEPEST: f32 = 3.0;
 /// The largest relative index.
 pub const DIFFUSION_DENSEST: f32 = 2.5;
 /// Cosines below this count as it.
@@ -303,7 +305,10 @@ pub fn weight(fraction: Vec3, corner: u32, volume: f32) -> f32 {
 /// Returns how the nodes' weights change with their depth, so that their mean depth is the point's.
 pub fn slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
     let wanted = missing / variance.max(DIFFUSION_LEAST_VARIANCE);
-    wanted.clamp(-1.0 / below.max(DIFFUSION_LEAST_STEP), 1.0 / above.max(DIFFUSION_LEAST_STEP))
+    let steepest = DIFFUSION_STEEPEST / (above + below).max(DIFFUSION_LEAST_STEP);
+    let falling = (1.0 / below.max(DIFFUSION_LEAST_STEP)).min(steepest);
+    let rising = (1.0 / above.max(DIFFUSION_LEAST_STEP)).min(steepest);
+    wanted.clamp(-falling, rising)
 }
 
 /// Returns a node's value that solves its equation for given neighbours.

@@ -331,10 +331,13 @@ pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
     volume * trilinear + volume * f64::from(LEAST_WEIGHT)
 }
 
-/// Compares the quotient's numerator with both limits, multiplied by the variance.
+/// Compares the quotient's numerator with both limits, multiplied by the variance. The limits are given by the
+/// distances at which a weight would be 0.
 pub fn slope(missing: f64, variance: f64, above: f64, below: f64) -> f64 {
     let variance = variance.max(f64::from(LEAST_VARIANCE));
-    let [above, below] = [above, below].map(|distance| distance.max(f64::from(LEAST_STEP)));
+    let least = f64::from(LEAST_STEP);
+    let reach = (above + below).max(least) / 3.0;
+    let [above, below] = [above, below].map(|distance| distance.max(least).max(reach));
     if missing * above > variance {
         above.recip()
     } else if -missing * below > variance {
