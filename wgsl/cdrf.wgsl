@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash f1b07d16289f0862
+// Version: 0.2.0, hash 56cb611c356c9846
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function": max(cos t, 0) convolved with a Gaussian of sigma =
 //   sigma0 curvature. The closed forms are derived in docs/cdrf.md. Abramowitz and Stegun,
@@ -105,8 +105,8 @@ fn cdrf_drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
 
 // Cosine of the light where the light that leaves here has entered. For a small shift the angle
 // becomes less by shift times its sine, as the drift has it; for any it is the aberration of a direction by a
-// speed, which keeps both poles.
-// Returns: (cosine + shift) / (1 + shift cosine), in [-1, 1]; `cosine` for a shift of 0.
+// speed, (cosine + shift) / (1 + shift cosine), which keeps both poles; as a sum, rounding keeps them too.
+// Returns: in [-1, 1]; `cosine` for a shift of 0.
 // Units: none.
 // Domain: any cosine, clamped to [-1, 1]; any shift, clamped to [-0.9, 0.9].
 // Outside: nothing.
@@ -114,7 +114,7 @@ fn cdrf_drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
 fn cdrf_shifted(cosine: f32, shift: f32) -> f32 {
     let c = clamp(cosine, -1.0f, 1.0f);
     let b = clamp(shift, -0.9f, 0.9f);
-    return clamp((c + b) / (1.0f + b * c), -1.0f, 1.0f);
+    return c + b * ((1.0f - c) * (1.0f + c)) / (1.0f + b * c);
 }
 
 // Angle from its sine. WGSL allows the built-in asin an absolute error of 6.8e-5, or the error of

@@ -94,7 +94,7 @@ pub fn drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
 pub fn shifted(cosine: f32, shift: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let b = shift.clamp(-0.9, 0.9);
-    ((c + b) / (1.0 + b * c)).clamp(-1.0, 1.0)
+    c + b * ((1.0 - c) * (1.0 + c)) / (1.0 + b * c)
 }
 
 /// Returns the angle in radians from its sine.

@@ -338,7 +338,11 @@ fn cases() -> Vec<Case> {
             Effect::ColoredShadow,
             behind("ruby"),
             settings(),
-            [vec!["stone in the light", "shadows of clear stones"], vec!["colored_shadow"], vec!["colored_shadow"]],
+            [
+                vec!["stone in the light", "view of a light", "views of lights", "shadows of clear stones"],
+                vec!["colored_shadow"],
+                vec!["colored_shadow"],
+            ],
         ),
         case(Effect::Environment, one("wax"), of_rung("accurate"), [vec!["harmonics"], vec![], vec![]]),
         case(Effect::Dielectric, one("wax_bunny"), of_rung("diffusion-16"), none()),
