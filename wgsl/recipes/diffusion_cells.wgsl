@@ -5,11 +5,14 @@
 // requires: cdrf, diffusion, environment, voxelization
 // parts: mesh, harmonics, diffusion_nodes
 //
+// Clear `filled`, `surfaces`, `entering`, `nodes`, `faces` and `reactions`; what holds no matter stays so.
 // After the recipe voxelization has filled a grid of twice the cells along each edge:
 // 1. `diffusion_cells_fill`, one workgroup of 64 per row of words: (words, cells, cells) / 64.
-// 2. `diffusion_cells_surface`, one invocation per triangle; `diffusion_cells_large`, any number of
+// 2. `diffusion_cells_list`, one invocation per tile of 4 x 4 x 4 voxels; `workgroups` begins as (0, 1, 1). All
+//    that follows is dispatched indirectly, by these counts, except:
+// 3. `diffusion_cells_surface`, one invocation per triangle; `diffusion_cells_large`, any number of
 //    workgroups.
-// 3. `diffusion_cells_finish`, one invocation per voxel.
+// 4. `diffusion_cells_finish`.
 
 // The density varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -47,13 +50,14 @@ struct DiffusionList {
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 // Binding 3 belongs to the part harmonics.
-// Which voxels hold any matter, a bit for each, in rows along x.
-@group(0) @binding(4) var<storage, read_write> matter: array<u32>;
+// Tiles that hold matter.
+@group(0) @binding(4) var<storage, read_write> tiles: array<u32>;
 // The filled eighths of each voxel.
 @group(0) @binding(5) var<storage, read_write> filled: array<u32>;
-// The surface's area in each voxel, and its distance from the node in voxel spacings, as bits.
-@group(0) @binding(6) var<storage, read_write> areas: array<atomic<u32>>;
-@group(0) @binding(7) var<storage, read_write> depths: array<atomic<u32>>;
+// Two words for each voxel: the surface's area; and by how much its distance from the node, in voxel spacings,
+// falls short of the largest, as bits.
+@group(0) @binding(6) var<storage, read_write> surfaces: array<atomic<u32>>;
+@group(0) @binding(7) var<storage, read_write> workgroups: array<atomic<u32>, 3>;
 @group(0) @binding(8) var<storage, read_write> large: DiffusionList;
 // Words of the part diffusion_nodes.
 @group(0) @binding(9) var<storage, read_write> nodes: array<u32>;
@@ -87,12 +91,14 @@ fn diffusion_cells_fill(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let word = invocation.x % words;
-    var bits = 0u;
     for (var half = 0u; half < 2u; half++) {
         let lower_near = diffusion_fine(2u * word + half, 2u * row);
         let upper_near = diffusion_fine(2u * word + half, 2u * row + vec2u(1u, 0u));
         let lower_far = diffusion_fine(2u * word + half, 2u * row + vec2u(0u, 1u));
         let upper_far = diffusion_fine(2u * word + half, 2u * row + 1u);
+        if ((lower_near | upper_near | lower_far | upper_far) == 0u) {
+            continue;
+        }
         for (var place = 0u; place < 16u; place++) {
             let x = 32u * word + 16u * half + place;
             if (x >= count) {
@@ -102,19 +108,36 @@ fn diffusion_cells_fill(@builtin(global_invocation_id) invocation: vec3u) {
             let near = ((lower_near >> shift) & 3u) | (((upper_near >> shift) & 3u) << 2u);
             let far = ((lower_far >> shift) & 3u) | (((upper_far >> shift) & 3u) << 2u);
             let parts = near | (far << 4u);
-            let index = diffusion_index(vec3u(x, row));
-            filled[index] = parts;
-            atomicStore(&areas[index], 0u);
-            atomicStore(&depths[index], bitcast<u32>(DIFFUSION_NODE_DEPTH));
-            if (EFFECT_ENVIRONMENT) {
-                for (var channel = 0u; channel < 3u; channel++) {
-                    atomicStore(&entering[3u * index + channel], 0u);
-                }
+            if (parts != 0u) {
+                filled[diffusion_index(vec3u(x, row))] = parts;
             }
-            bits |= select(0u, 1u << (16u * half + place), parts != 0u);
         }
     }
-    matter[word + words * (row.x + count * row.y)] = bits;
+}
+
+fn diffusion_tile_corner(tile: u32) -> vec3u {
+    let side = (cells.grid.cells + 3u) / 4u;
+    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
+}
+
+@compute @workgroup_size(DIFFUSION_GROUP)
+fn diffusion_cells_list(@builtin(global_invocation_id) invocation: vec3u) {
+    let side = (cells.grid.cells + 3u) / 4u;
+    if (invocation.x >= side * side * side) {
+        return;
+    }
+    let corner = diffusion_tile_corner(invocation.x);
+    let end = min(corner + 4u, vec3u(cells.grid.cells));
+    for (var z = corner.z; z < end.z; z++) {
+        for (var y = corner.y; y < end.y; y++) {
+            for (var x = corner.x; x < end.x; x++) {
+                if (filled[diffusion_index(vec3u(x, y, z))] != 0u) {
+                    tiles[atomicAdd(&workgroups[0], 1u)] = invocation.x;
+                    return;
+                }
+            }
+        }
+    }
 }
 
 // A triangle in voxel spacings from the grid's corner, and the number of pieces along each edge.
@@ -202,7 +225,7 @@ fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
             // The surface passes a voxel of which no eighth is filled: the matter lies behind it.
             holder = vec3u(clamp(position - 0.5f * triangle.normal, vec3f(0.0f), vec3f(f32(last))));
         }
-        atomicAdd(&areas[diffusion_index(holder)], area);
+        atomicAdd(&surfaces[2u * diffusion_index(holder)], area);
         if (EFFECT_ENVIRONMENT) {
             for (var channel = 0u; channel < 3u; channel++) {
                 atomicAdd(&entering[3u * diffusion_index(holder) + channel], arriving[channel]);
@@ -221,10 +244,11 @@ fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
                 continue;
             }
             let node = vec3f(near) + 0.5f + diffusion_centroid(parts);
-            let depth = bitcast<u32>(sqrt(diffusion_from_triangle(node, triangle)));
+            let depth = sqrt(diffusion_from_triangle(node, triangle));
+            let close = bitcast<u32>(max(DIFFUSION_NODE_DEPTH - depth, 0.0f));
             // Reading first avoids most of the atomic writes, which are expensive.
-            if (depth < atomicLoad(&depths[index])) {
-                atomicMin(&depths[index], depth);
+            if (close > atomicLoad(&surfaces[2u * index + 1u])) {
+                atomicMax(&surfaces[2u * index + 1u], close);
             }
         }
     }
@@ -258,10 +282,15 @@ fn diffusion_density(index: u32) -> f32 {
     return 1.0f;
 }
 
+// The distance from the surface of the triangles next to a voxel's node.
+fn diffusion_surface_distance(index: u32) -> f32 {
+    return DIFFUSION_NODE_DEPTH - bitcast<f32>(atomicLoad(&surfaces[2u * index + 1u]));
+}
+
 // The node's distance from the surface. If no triangle lies next to the voxel, by way of its
 // neighbours.
 fn diffusion_node_depth(voxel: vec3u, parts: u32) -> f32 {
-    var depth = bitcast<f32>(atomicLoad(&depths[diffusion_index(voxel)]));
+    var depth = diffusion_surface_distance(diffusion_index(voxel));
     if (depth < DIFFUSION_NODE_DEPTH) {
         return depth;
     }
@@ -276,27 +305,22 @@ fn diffusion_node_depth(voxel: vec3u, parts: u32) -> f32 {
         let index = diffusion_index(near);
         if (filled[index] != 0u) {
             let way = vec3f(step) - 1.0f + diffusion_centroid(filled[index]) - centroid;
-            depth = min(depth, bitcast<f32>(atomicLoad(&depths[index])) + length(way));
+            depth = min(depth, diffusion_surface_distance(index) + length(way));
         }
     }
     return depth;
 }
 
 @compute @workgroup_size(DIFFUSION_GROUP)
-fn diffusion_cells_finish(@builtin(global_invocation_id) invocation: vec3u) {
+fn diffusion_cells_finish(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let count = cells.grid.cells;
-    let index = invocation.x;
-    if (index >= count * count * count) {
+    let voxel = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    if (any(voxel >= vec3u(count))) {
         return;
     }
-    let voxel = vec3u(index % count, index / count % count, index / count / count);
+    let index = diffusion_index(voxel);
     let parts = filled[index];
     if (parts == 0u) {
-        nodes[index] = 0u;
-        reactions[index] = vec4f(0.0f);
-        for (var axis = 0u; axis < 3u; axis++) {
-            faces[3u * index + axis] = 0.0f;
-        }
         return;
     }
     let own = diffusion_density(index);
@@ -319,7 +343,7 @@ fn diffusion_cells_finish(@builtin(global_invocation_id) invocation: vec3u) {
         faces[3u * index + axis] = conductance;
     }
     let depth = diffusion_node_depth(voxel, parts);
-    let area = f32(atomicLoad(&areas[index])) / DIFFUSION_AREA;
+    let area = f32(atomicLoad(&surfaces[2u * index])) / DIFFUSION_AREA;
     let volume = diffusion_volume(parts);
     let through = vec3f(
         diffusion_surface(area, depth, own, cells.milne.x),

@@ -18,8 +18,9 @@ override EFFECT_ENVIRONMENT: bool = true;
 // The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
 override EFFECT_DIELECTRIC: bool = false;
 
-// The way inside is cut where its optical depth is 0, .4, 1.2, 2.5 and 5.
+// The way inside is cut where its optical depth is 0, .3, .9, 2 and 5.
 const DIFFUSION_PIECES: u32 = 4u;
+const DIFFUSION_STEPS: vec4f = vec4f(0.3f, 0.6f, 1.1f, 3.0f);
 
 struct DiffusionView {
     clip_from_world: mat4x4f,
@@ -231,9 +232,12 @@ fn diffusion_angles(cosine: f32) -> vec3f {
 // The way of the eye inside the body: where it is cut, and the light that is scattered there after it
 // was scattered before.
 struct DiffusionWay {
-    // Positions, and the length of the way up to there in voxel spacings.
-    ends: array<vec4f, 5>,
-    densities: array<f32, 5>,
+    // Length of the way up to each piece's end, in voxel spacings. In a vector, since an array whose index
+    // varies is kept in memory.
+    ends: vec4f,
+    // Density at the surface, and at each piece's end: 0 where the way has left the body.
+    surface: f32,
+    densities: vec4f,
     // Radiance towards the eye for an albedo of 4 pi.
     scattered: vec3f,
     // Radiance that comes straight through the body.
@@ -242,97 +246,131 @@ struct DiffusionWay {
     depth: f32,
 }
 
+// What is known of the eye's way up to some point.
+struct DiffusionEye {
+    // In voxel spacings.
+    way: f32,
+    // Depth, density and filled share of the space there, and the largest of these shares so far.
+    depth: f32,
+    density: f32,
+    filled: f32,
+    fullest: f32,
+    // The fluence there, and the optical depth up to there.
+    near: vec3f,
+    gone: vec3f,
+    scattered: vec3f,
+}
+
+// Adds a piece of the way, or begins it.
+fn diffusion_piece(eye: ptr<function, DiffusionEye>, sample: DiffusionSample, before: f32, depth: f32, around: DiffusionAround, begins: bool) {
+    var below = depth;
+    var outside = around.near;
+    if (!begins) {
+        // Towards the far side the fluence falls again, by about how much of the space is filled.
+        let full = sample.filled / max((*eye).fullest, 1e-6f);
+        let above = max(0.75f * (2.0f * full - 1.0f), 0.0f) / max(1.001f - full, 1e-3f);
+        if (EFFECT_ENVIRONMENT) {
+            outside = select(around.near, around.far, above < below);
+        }
+        below = min(below, above);
+    }
+    let found = diffusion_at_depth(sample, below);
+    let far = diffusion_below(found, below, outside);
+    if (!begins) {
+        let thickness = body.extinction * (max((*eye).density, DIFFUSION_THINNEST) * ((*eye).way - before));
+        (*eye).scattered += exp(-(*eye).gone) * vec3f(
+            diffusion_segment((*eye).near.x, far.x, thickness.x),
+            diffusion_segment((*eye).near.y, far.y, thickness.y),
+            diffusion_segment((*eye).near.z, far.z, thickness.z),
+        );
+        (*eye).gone += thickness;
+    }
+    (*eye).depth = found.depth;
+    (*eye).density = found.density;
+    (*eye).filled = found.filled;
+    (*eye).near = far;
+}
+
 // The eye's way inside from a point of the surface; `toward_eye` and its cosine are those inside.
 fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles: vec3f, around: DiffusionAround) -> DiffusionWay {
     // The same places for all channels.
-    var depths = array<f32, 5>(0.0f, 0.4f, 1.2f, 2.5f, 5.0f);
     let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
     // A channel that scatters nothing has nothing to integrate.
     let scattering = select(vec3f(most), body.extinction, body.gamma < vec3f(1.0f));
     let extinction = sqrt(min(scattering.x, min(scattering.y, scattering.z)) * most);
     let start = voxelization_local(body.grid, position);
     var inside: DiffusionWay;
-    var scattered = vec3f(0.0f);
-    var near = vec3f(0.0f);
-    var gone = vec3f(0.0f);
-    var way = 0.0f;
-    var filled = 0.0f;
-    var fullest = 0.0f;
+    var eye: DiffusionEye;
+    eye.density = 1.0f;
+    var pieces = 0u;
+    // The end before the one that lies outside, and how full the space is there.
+    var left = false;
+    var beyond = 0.0f;
+    var before = 0.0f;
     for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
-        if (end == 0u || inside.densities[end - 1u] > 0.0f) {
-            let before = way;
-            var density = 1.0f;
+        if (!left) {
+            before = eye.way;
             if (end > 0u) {
-                density = max(inside.densities[end - 1u], DIFFUSION_THINNEST);
-                way += (depths[end] - depths[end - 1u]) / (extinction * density);
+                eye.way += DIFFUSION_STEPS[end - 1u] / (extinction * max(eye.density, DIFFUSION_THINNEST));
             }
-            var found = diffusion_sample(start - way * toward_eye);
-            var below = way * cosine_eye;
-            fullest = max(fullest, found.filled);
-            if (end > 0u && found.filled < 0.5f * fullest) {
-                // The way leaves the body about where the space is half as full as inside.
-                let half_full = 0.5f * fullest;
-                var inner = before;
-                var outer = way;
-                var beyond = found.filled;
-                // Between points much further apart than nodes, it is searched for first.
-                for (var turn = 0u; turn < 6u && outer - inner > 3.0f; turn++) {
-                    let middle = diffusion_sample(start - 0.5f * (inner + outer) * toward_eye).filled;
-                    if (middle < half_full) {
-                        outer = 0.5f * (inner + outer);
-                        beyond = middle;
-                    } else {
-                        inner = 0.5f * (inner + outer);
-                        filled = middle;
-                    }
-                }
-                let share = clamp((filled - half_full) / max(filled - beyond, 1e-6f), 0.0f, 1.0f);
-                way = mix(inner, outer, share);
-                found = diffusion_sample(start - way * toward_eye);
-                if (found.filled <= 0.0f) {
-                    // Where points are three spacings apart the guess may lie outside of all nodes.
-                    found = diffusion_sample(start - inner * toward_eye);
-                }
-                found.density = 0.0f;
-            }
-            var outside = around.near;
-            if (end > 0u) {
-                // Towards the far side the fluence falls again, by about how much of the space is filled.
-                let full = found.filled / max(fullest, 1e-6f);
-                let above = max(0.75f * (2.0f * full - 1.0f), 0.0f) / max(1.001f - full, 1e-3f);
-                if (EFFECT_ENVIRONMENT) {
-                    outside = select(around.near, around.far, above < below);
-                }
-                below = min(below, above);
-            }
-            filled = found.filled;
-            inside.densities[end] = found.density;
-            found = diffusion_at_depth(found, below);
-            let far = diffusion_below(found, below, outside);
-            if (end == 0u) {
-                inside.depth = found.depth;
+            let found = diffusion_sample(start - eye.way * toward_eye);
+            eye.fullest = max(eye.fullest, found.filled);
+            left = end > 0u && found.filled < 0.5f * eye.fullest;
+            if (left) {
+                beyond = found.filled;
             } else {
-                let thickness = body.extinction * (density * (way - before));
-                scattered += exp(-gone) * vec3f(
-                    diffusion_segment(near.x, far.x, thickness.x),
-                    diffusion_segment(near.y, far.y, thickness.y),
-                    diffusion_segment(near.z, far.z, thickness.z),
-                );
-                gone += thickness;
+                diffusion_piece(&eye, found, before, eye.way * cosine_eye, around, end == 0u);
             }
-            near = far;
         }
-        inside.ends[end] = vec4f(position - way * body.grid.spacing * toward_eye, way);
+        if (end == 0u) {
+            inside.depth = eye.depth;
+            inside.surface = eye.density;
+        } else if (!left) {
+            inside.ends[end - 1u] = eye.way;
+            inside.densities[end - 1u] = eye.density;
+            pieces = end;
+        }
     }
-    if (inside.densities[DIFFUSION_PIECES] > 0.0f) {
-        scattered += exp(-gone) * near;
+    if (left) {
+        // The way leaves the body about where the space is half as full as inside.
+        let half_full = 0.5f * eye.fullest;
+        let below = eye.way * cosine_eye;
+        var inner = before;
+        var outer = eye.way;
+        // Between points much further apart than nodes, it is searched for first.
+        for (var turn = 0u; turn < 6u && outer - inner > 3.0f; turn++) {
+            let middle = diffusion_sample(start - 0.5f * (inner + outer) * toward_eye).filled;
+            if (middle < half_full) {
+                outer = 0.5f * (inner + outer);
+                beyond = middle;
+            } else {
+                inner = 0.5f * (inner + outer);
+                eye.filled = middle;
+            }
+        }
+        let share = clamp((eye.filled - half_full) / max(eye.filled - beyond, 1e-6f), 0.0f, 1.0f);
+        eye.way = mix(inner, outer, share);
+        var found = diffusion_sample(start - eye.way * toward_eye);
+        if (found.filled <= 0.0f) {
+            // Where points are three spacings apart the guess may lie outside of all nodes.
+            found = diffusion_sample(start - inner * toward_eye);
+        }
+        diffusion_piece(&eye, found, before, below, around, false);
+        for (var end = 0u; end < DIFFUSION_PIECES; end++) {
+            if (end >= pieces) {
+                inside.ends[end] = eye.way;
+                inside.densities[end] = 0.0f;
+            }
+        }
+    } else {
+        eye.scattered += exp(-eye.gone) * eye.near;
     }
-    inside.scattered = body.largest * scattered * angles;
+    inside.scattered = body.largest * eye.scattered * angles;
     inside.straight = vec3f(0.0f);
     if (EFFECT_ENVIRONMENT) {
-        if (inside.densities[DIFFUSION_PIECES] == 0.0f) {
+        if (left) {
             // The angles' factor, since the local part is that of a half space, through which nothing comes.
-            inside.straight = angles * exp(-gone) * around.behind;
+            inside.straight = angles * exp(-eye.gone) * around.behind;
         }
     }
     return inside;
@@ -369,32 +407,39 @@ fn diffusion_way(layer: u32, position: vec3f, toward_light: vec3f) -> f32 {
     return max(whole / max(near, 1e-12f) - free, 0.0f);
 }
 
-// Light that is scattered towards the eye for the first time, along the way inside: radiance for an
-// irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
+// Light that is scattered towards the eye for the first time, along the way inside from a point, away from
+// `toward_eye`: radiance for an irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
 // light that meets the first point.
-fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
-    var ends = inside.ends;
-    var densities = inside.densities;
+fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
     var sum = vec3f(0.0f);
     var gone = vec3f(0.0f);
     var near = vec3f(0.0f);
-    var thick = body.extinction * densities[0];
+    var before = 0.0f;
+    var last = inside.surface;
     for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
-        var way = diffusion_way(layer, ends[end].xyz, toward_light);
+        var reached = 0.0f;
+        var dense = inside.surface;
+        if (end > 0u) {
+            reached = inside.ends[end - 1u];
+            dense = inside.densities[end - 1u];
+        }
         // A texel spans much of the surface's height where light grazes it; a lit surface counts as flat there.
-        let flat = ends[end].w * cosines.x / max(cosines.y, 0.02f);
+        let flat = reached * cosines.x / max(cosines.y, 0.02f);
         var flatness = lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y));
-        if (EFFECT_DIELECTRIC) {
-            // The map knows the way of light that is not refracted.
+        if (EFFECT_DIELECTRIC || end == 0u) {
+            // The map knows the way of light that is not refracted; and no way leads to where light arrives.
             flatness = lit;
         }
-        way = mix(way, flat, flatness);
-        way = select(way, way * (1.0f - lit), end == 0u);
+        var way = flat;
+        if (flatness < 1.0f) {
+            let found = diffusion_way(layer, position - reached * body.grid.spacing * toward_eye, toward_light);
+            way = mix(found, flat, flatness);
+        }
         // Where the eye's way leaves the body, light on its way to there goes through the matter before.
-        let density = select(densities[max(end, 1u) - 1u], densities[end], densities[end] > 0.0f);
+        let density = select(last, dense, dense > 0.0f);
         let far = min(body.extinction * (density * way), vec3f(30.0f));
         if (end > 0u) {
-            let thickness = body.extinction * (densities[end - 1u] * (ends[end].w - ends[end - 1u].w));
+            let thickness = body.extinction * (last * (reached - before));
             sum += exp(-gone) * vec3f(
                 diffusion_unscattered(thickness.x, near.x, far.x),
                 diffusion_unscattered(thickness.y, near.y, far.y),
@@ -403,6 +448,8 @@ fn diffusion_single(layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, i
             gone += thickness;
         }
         near = far;
+        before = reached;
+        last = dense;
     }
     return sum;
 }
@@ -438,7 +485,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         // The two nodes below the point, of whose distances the local part is made.
         let start = voxelization_local(body.grid, input.position);
         let behind = diffusion_sample(start - normal * (inside.depth + 1.0f));
-        let optical = body.extinction * inside.densities[0];
+        let optical = body.extinction * inside.surface;
         node = optical * max(inside.depth, 1e-3f);
         gap = optical * clamp(behind.depth - inside.depth, 0.0f, 1.0f);
     }
@@ -470,7 +517,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
             entered *= (1.0f - fresnel_dielectric(met, body.index)) * met / cosine_light;
         }
         if (EFFECT_DIFFUSION) {
-            sent += 0.07957747f * albedo * entered * diffusion_single(layer, arrival.direction, lit, vec2f(cosine_eye, cosine_light), inside);
+            sent += 0.07957747f * albedo * entered * diffusion_single(input.position, back, layer, arrival.direction, lit, vec2f(cosine_eye, cosine_light), inside);
         }
         if (lit > 0.0f) {
             let law = vec3f(

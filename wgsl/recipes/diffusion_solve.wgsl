@@ -7,25 +7,29 @@
 // parts: diffusion_nodes, diffusion_packed
 //
 // Levels are numbered from the finest. Each has its own buffers, and half the cells along each edge,
-// rounded up. The coarsest is a single cell, which corrects the mean.
-// Once the recipe diffusion_cells has made the finest level's equations:
-// 1. For each coarser level `diffusion_solve_coarsen`, one invocation per cell.
-// 2. For each level `diffusion_solve_list`, one invocation per tile of 4 x 4 x 4 cells; `workgroups`
-//    begins as (0, 1, 1). All that follows is dispatched indirectly, by these counts.
-// 3. Cycles: on each level from the finest, `diffusion_solve_sweep` twice for each colour, then
-//    `diffusion_solve_restrict` to the next level; on the coarsest level more sweeps; back up,
-//    `diffusion_solve_prolong` to the next finer level, and sweeps in the colours' reverse order.
+// rounded up. The coarsest has at most four along each edge, a single tile.
+// Once the recipe diffusion_cells has made the finest level's equations and listed its tiles, and `faces` and
+// `reactions` of the others are cleared, with `workgroups` as (0, 1, 1):
+// 1. From the finest level to the last but one `diffusion_solve_coarsen`, which makes the next level's equations,
+//    and on that level `diffusion_solve_list`, one invocation per tile of 4 x 4 x 4 cells. All else is dispatched
+//    indirectly, by the count of the level's tiles.
+// 2. Cycles: on each level from the finest, `diffusion_solve_sweep` twice for each colour, then
+//    `diffusion_solve_restrict` to the next level; on the coarsest `diffusion_solve_coarsest`, one workgroup;
+//    back up, `diffusion_solve_prolong` to the next finer level, and sweeps in the colours' reverse order.
+//    From no light at all, a first cycle sweeps on the way up alone, and not on the finest level.
+// 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
 // 4. `diffusion_solve_pack`, for the recipe that shades.
 
 // The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
 // within each coarse cell has slopes twice as steep as one that is linear.
 const DIFFUSION_COARSE: f32 = 0.5f;
+// Turns on the coarsest level, each of a correction of the mean and of a sweep over both colours. Four cells in
+// a row keep a third of an error that is linear along it.
+const DIFFUSION_TURNS: u32 = 6u;
 
 struct DiffusionLevel {
     // Cells along an edge.
     cells: u32,
-    // Cells along an edge of the next finer level.
-    finer_cells: u32,
     // The colour of the sweep: the parity of x + y + z.
     color: u32,
 }
@@ -39,50 +43,52 @@ struct DiffusionLevel {
 // Fluence and the equations' right side in each channel; the fourth number is not used.
 @group(0) @binding(5) var<storage, read_write> fluence: array<vec4f>;
 @group(0) @binding(6) var<storage, read_write> right: array<vec4f>;
-// Of the next finer level.
-@group(1) @binding(0) var<storage, read> finer_faces: array<f32>;
-@group(1) @binding(1) var<storage, read> finer_reactions: array<vec4f>;
 // Of the next coarser level.
+@group(1) @binding(0) var<storage, read_write> coarser_faces: array<f32>;
+@group(1) @binding(1) var<storage, read_write> coarser_reactions: array<vec4f>;
 @group(1) @binding(2) var<storage, read_write> coarser_fluence: array<vec4f>;
 @group(1) @binding(3) var<storage, read_write> coarser_right: array<vec4f>;
 // Words of the part diffusion_nodes, and those of the part diffusion_packed.
 @group(1) @binding(4) var<storage, read> nodes: array<u32>;
 @group(1) @binding(5) var<storage, read_write> packed: array<vec2u>;
+// For each listed tile, sums over its cells of squares in each channel: of what is left of the equations, and of
+// their right side.
+@group(1) @binding(6) var<storage, read_write> residuals: array<array<vec4f, 2>>;
 
 fn diffusion_index(cell: vec3u, cells: u32) -> u32 {
     return cell.x + cells * (cell.y + cells * cell.z);
 }
 
-@compute @workgroup_size(64)
-fn diffusion_solve_coarsen(@builtin(global_invocation_id) invocation: vec3u) {
-    let count = level.cells;
-    let index = invocation.x;
-    if (index >= count * count * count) {
+fn diffusion_tile_corner(tile: u32) -> vec3u {
+    let side = (level.cells + 3u) / 4u;
+    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
+}
+
+// Makes the coarser level's equations. A workgroup is a tile, and each of its lanes a coarse cell.
+@compute @workgroup_size(8)
+fn diffusion_solve_coarsen(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let corner = diffusion_tile_corner(tiles[group.x]) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
+    if (any(corner >= vec3u(level.cells))) {
         return;
     }
-    let cell = vec3u(index % count, index / count % count, index / count / count);
     var reaction = vec4f(0.0f);
     var conductances = vec3f(0.0f);
     for (var part = 0u; part < 8u; part++) {
         let step = vec3u(part & 1u, (part >> 1u) & 1u, part >> 2u);
-        if (any(2u * cell + step >= vec3u(level.finer_cells))) {
+        if (any(corner + step >= vec3u(level.cells))) {
             continue;
         }
-        let child = diffusion_index(2u * cell + step, level.finer_cells);
-        reaction += finer_reactions[child];
+        let child = diffusion_index(corner + step, level.cells);
+        reaction += reactions[child];
         for (var axis = 0u; axis < 3u; axis++) {
-            conductances[axis] += select(0.0f, finer_faces[3u * child + axis], step[axis] == 1u);
+            conductances[axis] += select(0.0f, faces[3u * child + axis], step[axis] == 1u);
         }
     }
-    reactions[index] = reaction;
+    let parent = diffusion_index(corner / 2u, (level.cells + 1u) / 2u);
+    coarser_reactions[parent] = reaction;
     for (var axis = 0u; axis < 3u; axis++) {
-        faces[3u * index + axis] = DIFFUSION_COARSE * conductances[axis];
+        coarser_faces[3u * parent + axis] = DIFFUSION_COARSE * conductances[axis];
     }
-}
-
-fn diffusion_tile_corner(tile: u32) -> vec3u {
-    let side = (level.cells + 3u) / 4u;
-    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
 }
 
 @compute @workgroup_size(64)
@@ -132,12 +138,15 @@ fn diffusion_across(cell: vec3u, index: u32) -> DiffusionFaces {
     return sums;
 }
 
-@compute @workgroup_size(32)
-fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+// The place in a tile of one of the 32 cells of a colour.
+fn diffusion_colored(lane: u32, color: u32) -> vec3u {
     let y = (lane >> 1u) & 3u;
     let z = lane >> 3u;
-    let x = 2u * (lane & 1u) + ((y + z + level.color) & 1u);
-    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(x, y, z);
+    return vec3u(2u * (lane & 1u) + ((y + z + color) & 1u), y, z);
+}
+
+// Solves a cell's equations for its neighbours as they are.
+fn diffusion_relax_cell(cell: vec3u) {
     if (any(cell >= vec3u(level.cells))) {
         return;
     }
@@ -156,10 +165,61 @@ fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_inv
     );
 }
 
+@compute @workgroup_size(32)
+fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    diffusion_relax_cell(diffusion_tile_corner(tiles[group.x]) + diffusion_colored(lane, level.color));
+}
+
 // The residual of a cell's equations.
 fn diffusion_residual(cell: vec3u, index: u32) -> vec3f {
     let across = diffusion_across(cell, index);
     return right[index].xyz + across.inflow - (across.conductances + reactions[index].xyz) * fluence[index].xyz;
+}
+
+// What each lane's two cells leave of their equations, and what they lose for a fluence of 1.
+var<workgroup> lefts: array<vec3f, 32>;
+var<workgroup> losses: array<vec3f, 32>;
+
+@compute @workgroup_size(32)
+fn diffusion_solve_coarsest(@builtin(local_invocation_index) lane: u32) {
+    for (var turn = 0u; turn < DIFFUSION_TURNS; turn++) {
+        var left = vec3f(0.0f);
+        var loss = vec3f(0.0f);
+        for (var color = 0u; color < 2u; color++) {
+            let cell = diffusion_colored(lane, color);
+            let index = diffusion_index(min(cell, vec3u(level.cells - 1u)), level.cells);
+            if (all(cell < vec3u(level.cells)) && reactions[index].w > 0.0f) {
+                left += diffusion_residual(cell, index);
+                loss += reactions[index].xyz;
+            }
+        }
+        lefts[lane] = left;
+        losses[lane] = loss;
+        workgroupBarrier();
+        left = vec3f(0.0f);
+        loss = vec3f(0.0f);
+        for (var other = 0u; other < 32u; other++) {
+            left += lefts[other];
+            loss += losses[other];
+        }
+        let mean = vec3f(
+            diffusion_relax(left.x, 0.0f, 0.0f, loss.x),
+            diffusion_relax(left.y, 0.0f, 0.0f, loss.y),
+            diffusion_relax(left.z, 0.0f, 0.0f, loss.z),
+        );
+        for (var color = 0u; color < 2u; color++) {
+            let cell = diffusion_colored(lane, color);
+            let index = diffusion_index(min(cell, vec3u(level.cells - 1u)), level.cells);
+            if (all(cell < vec3u(level.cells)) && reactions[index].w > 0.0f) {
+                fluence[index] += vec4f(mean, 0.0f);
+            }
+        }
+        storageBarrier();
+        for (var color = 0u; color < 2u; color++) {
+            diffusion_relax_cell(diffusion_colored(lane, color));
+            storageBarrier();
+        }
+    }
 }
 
 // Adds up this level's residuals as the coarser level's right side, whose fluence begins as 0. A
@@ -197,6 +257,31 @@ fn diffusion_solve_prolong(@builtin(workgroup_id) group: vec3u, @builtin(local_i
     let parent = diffusion_index(cell / 2u, (level.cells + 1u) / 2u);
     if (reactions[index].w > 0.0f) {
         fluence[index] += coarser_fluence[parent];
+    }
+}
+
+var<workgroup> squares: array<array<vec3f, 2>, 64>;
+
+@compute @workgroup_size(64)
+fn diffusion_solve_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let index = diffusion_index(min(cell, vec3u(level.cells - 1u)), level.cells);
+    squares[lane] = array<vec3f, 2>(vec3f(0.0f), vec3f(0.0f));
+    if (all(cell < vec3u(level.cells)) && reactions[index].w > 0.0f) {
+        let left = diffusion_residual(cell, index);
+        let load = right[index].xyz;
+        squares[lane] = array<vec3f, 2>(left * left, load * load);
+    }
+    workgroupBarrier();
+    if (lane > 0u) {
+        return;
+    }
+    for (var number = 0u; number < 2u; number++) {
+        var sum = vec3f(0.0f);
+        for (var other = 0u; other < 64u; other++) {
+            sum += squares[other][number];
+        }
+        residuals[group.x][number] = vec4f(sum, 0.0f);
     }
 }
 

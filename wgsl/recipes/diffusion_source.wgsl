@@ -5,8 +5,8 @@
 // requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
 // parts: lights, light_views, diffusion_nodes
 //
-// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map,
-// then diffusion_source_finish with any number of workgroups.
+// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, then
+// diffusion_source_finish with a workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -19,8 +19,8 @@ override EFFECT_DIELECTRIC: bool = false;
 // Light that fills one voxel's face, as a number of units. Light is added up in whole numbers, so that
 // its order makes no difference; sixteen times as much on every side of a voxel still fits.
 const DIFFUSION_LIGHT: f32 = 16777216.0f;
-// Rays end at this optical depth, where 1e-3 of the light is left.
-const DIFFUSION_RAY_DEPTH: f32 = 7.0f;
+// What is left of the light at this optical depth, 7e-3 of it, collides there.
+const DIFFUSION_RAY_DEPTH: f32 = 5.0f;
 
 struct DiffusionSource {
     grid: VoxelizationGrid,
@@ -47,6 +47,8 @@ struct DiffusionSource {
 @group(1) @binding(4) var<storage, read_write> right: array<vec4f>;
 // What the light from all around adds to it, three numbers for each voxel, as bits.
 @group(1) @binding(5) var<storage, read> entering: array<u32>;
+// Tiles of 4 x 4 x 4 voxels that hold matter.
+@group(1) @binding(6) var<storage, read> tiles: array<u32>;
 
 // The eight nodes around a point, and their shares in what lies between them.
 struct DiffusionAround {
@@ -184,26 +186,29 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     var gone = vec3f(0.0f);
     var way = 0.0f;
     var entered = false;
+    var local = 1.0f;
     for (var step = 0u; step < 1024u; step++) {
-        var local = 1.0f;
         if (EFFECT_EXTINCTION_PER_VOXEL) {
             let voxel = vec3u(clamp(entry - (way + 1e-3f) * back, vec3f(0.0f), vec3f(f32(cells - 1u))));
-            local = density[voxel.x + cells * (voxel.y + cells * voxel.z)];
+            let index = voxel.x + cells * (voxel.y + cells * voxel.z);
+            // Where there is no matter there is no density.
+            local = select(local, density[index], nodes[index] != 0u);
         }
         // Steps are an optical depth long, in the densest channel of which anything is left.
         let left = select(vec3f(0.0f), source.extinction, gone < vec3f(DIFFUSION_RAY_DEPTH));
         let densest = max(left.x, max(left.y, left.z));
-        let length = min(0.5f, 1.0f / max(densest * local, 1e-6f));
+        let length = min(0.75f, 1.0f / max(densest * local, 1e-6f));
         // Where the mean of what is scattered along the step lies.
         let middle = way + length * (0.5f - 0.083f * densest * local * length);
         let place = entry - middle * back;
         let inside = diffusion_filled(place);
         entered = entered || inside;
         // The surface cuts voxels, so that a ray may begin beside the first filled one.
-        if ((!inside && (entered || middle > 1.0f)) || min(gone.x, min(gone.y, gone.z)) > DIFFUSION_RAY_DEPTH) {
+        if ((!inside && (entered || middle > 1.2f)) || min(gone.x, min(gone.y, gone.z)) >= DIFFUSION_RAY_DEPTH) {
             break;
         }
-        let thickness = source.extinction * (local * length);
+        var thickness = source.extinction * (local * length);
+        thickness = select(thickness, vec3f(2.0f * DIFFUSION_OPAQUE), gone + thickness >= vec3f(DIFFUSION_RAY_DEPTH));
         let below = middle * cosine;
         let around = diffusion_around(place, below, cells);
         var given = vec3f(0.0f);
@@ -226,21 +231,24 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
 }
 
 @compute @workgroup_size(64)
-fn diffusion_source_finish(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let count = source.grid.cells * source.grid.cells * source.grid.cells;
-    for (var voxel = invocation.x; voxel < count; voxel += 64u * groups.x) {
-        if (nodes[voxel] == 0u) {
-            continue;
-        }
-        let load = vec3f(vec3u(
-            atomicLoad(&loads[3u * voxel]),
-            atomicLoad(&loads[3u * voxel + 1u]),
-            atomicLoad(&loads[3u * voxel + 2u]),
-        ));
-        var all = 3.0f * source.extinction * load / DIFFUSION_LIGHT;
-        if (EFFECT_ENVIRONMENT) {
-            all += bitcast<vec3f>(vec3u(entering[3u * voxel], entering[3u * voxel + 1u], entering[3u * voxel + 2u]));
-        }
-        right[voxel] = vec4f(all, 0.0f);
+fn diffusion_source_finish(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let cells = source.grid.cells;
+    let side = (cells + 3u) / 4u;
+    let tile = tiles[group.x];
+    let corner = 4u * vec3u(tile % side, tile / side % side, tile / side / side);
+    let place = corner + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    if (any(place >= vec3u(cells))) {
+        return;
     }
+    let voxel = place.x + cells * (place.y + cells * place.z);
+    let load = vec3f(vec3u(
+        atomicLoad(&loads[3u * voxel]),
+        atomicLoad(&loads[3u * voxel + 1u]),
+        atomicLoad(&loads[3u * voxel + 2u]),
+    ));
+    var all = 3.0f * source.extinction * load / DIFFUSION_LIGHT;
+    if (EFFECT_ENVIRONMENT) {
+        all += bitcast<vec3f>(vec3u(entering[3u * voxel], entering[3u * voxel + 1u], entering[3u * voxel + 2u]));
+    }
+    right[voxel] = vec4f(all, 0.0f);
 }

@@ -4,8 +4,9 @@
 // requires: veins, voxelization
 // parts: matter
 //
-// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds; for
-// diffusion, between diffusion_cells_fill and diffusion_cells_finish.
+// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds. For
+// diffusion, dispatch optical_path_density_listed between diffusion_cells_list and diffusion_cells_finish, a
+// workgroup for each tile that holds matter.
 
 // Densities from a 3D texture instead of from veins. Called for by a grid of densities.
 override DENSITY_FROM_TEXTURE: bool = false;
@@ -22,6 +23,8 @@ struct OpticalPathBox {
 @group(0) @binding(3) var<uniform> pattern: VeinsPattern;
 @group(0) @binding(4) var densities: texture_3d<f32>;
 @group(0) @binding(5) var<uniform> extent: OpticalPathBox;
+// Tiles of 4 x 4 x 4 voxels.
+@group(0) @binding(6) var<storage, read> tiles: array<u32>;
 
 fn optical_path_texel(texel: vec3u) -> f32 {
     return textureLoad(densities, texel, 0).x;
@@ -66,19 +69,33 @@ fn optical_path_near_matter(voxel: vec3u) -> bool {
     return place == 0u || place == 31u || ((bits >> (max(place, 1u) - 1u)) & 7u) != 0u;
 }
 
+fn optical_path_fill(voxel: vec3u) {
+    let centre = voxelization_centre(grid, voxel);
+    var found = 0.0f;
+    if (DENSITY_FROM_TEXTURE) {
+        found = optical_path_sampled(centre);
+    } else {
+        found = veins_density(centre, pattern);
+    }
+    density[voxelization_index(grid, voxel)] = found;
+}
+
 @compute @workgroup_size(64)
 fn optical_path_density(@builtin(local_invocation_index) invocation: u32, @builtin(workgroup_id) row: vec3u) {
     for (var x = invocation; x < grid.cells; x += 64u) {
         if (optical_path_near_matter(vec3u(x, row.yz))) {
-            let voxel = vec3u(x, row.yz);
-            let centre = voxelization_centre(grid, voxel);
-            var found = 0.0f;
-            if (DENSITY_FROM_TEXTURE) {
-                found = optical_path_sampled(centre);
-            } else {
-                found = veins_density(centre, pattern);
-            }
-            density[voxelization_index(grid, voxel)] = found;
+            optical_path_fill(vec3u(x, row.yz));
         }
+    }
+}
+
+@compute @workgroup_size(64)
+fn optical_path_density_listed(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3u) {
+    let side = (grid.cells + 3u) / 4u;
+    let tile = tiles[group.x];
+    let corner = 4u * vec3u(tile % side, tile / side % side, tile / side / side);
+    let voxel = corner + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    if (all(voxel < vec3u(grid.cells))) {
+        optical_path_fill(voxel);
     }
 }

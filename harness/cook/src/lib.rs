@@ -9,6 +9,7 @@ pub mod cost;
 pub mod exposure;
 pub mod formulas;
 pub mod gallery;
+pub mod motion;
 pub mod seed;
 pub mod snapshot;
 pub mod text_file;

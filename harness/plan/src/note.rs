@@ -22,6 +22,15 @@ pub enum Note {
         /// Upper bound on the linear radiance that any pixel lacks.
         bound: f32,
     },
+    /// How far the diffusion through a body was solved, which was asked for.
+    Solved {
+        /// Name of the object.
+        object: String,
+        /// Number of multigrid cycles.
+        cycles: u32,
+        /// What is left of the equations in each channel, as a share of their right side.
+        residual: [f64; 3],
+    },
     /// Meshes that a rung treats as the surface of a solid although they are not.
     NotSolid {
         /// The objects concerned.
@@ -125,6 +134,12 @@ impl fmt::Display for Note {
                 "object `{object}`: its paths wind more than the solver follows, which stopped early; its radiance may be too low by at most \
                  {bound:.1e}"
             ),
+            Self::Solved { object, cycles, residual: [red, green, blue] } => write!(
+                f,
+                "object `{object}`: after {cycles} cycle{} of multigrid, {red:.1e}, {green:.1e} and {blue:.1e} of its equations of diffusion are \
+                 left in red, green and blue",
+                if *cycles == 1 { "" } else { "s" }
+            ),
             Self::NotSolid { objects, rung, faults } => write!(
                 f,
                 "{objects}: rung `{rung}` takes a mesh for the surface of a solid, but {}; mend the mesh, or light inside goes astray",
@@ -196,7 +211,9 @@ mod tests {
             assert!(line.contains(says), "{line}");
             line
         };
-        let mut lines = vec![open, stopped];
+        let solved = Note::Solved { object: "hare".to_owned(), cycles: 3, residual: [1e-3, 2.5e-4, 0.0] }.to_string();
+        assert!(solved.contains("after 3 cycles of multigrid, 1.0e-3, 2.5e-4 and 0.0e0"), "{solved}");
+        let mut lines = vec![open, stopped, solved];
         lines.extend([
             of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),
             of(Note::InsideOut { objects: objects(3) }, "3 objects, first `hare`: the triangles run clockwise"),

@@ -9,6 +9,20 @@ use lapidary_veins::VeinsPattern;
 
 const RECIPE: &str = "optical_path_density";
 
+/// Where densities are needed.
+#[derive(Clone, Copy)]
+pub(super) enum Where {
+    /// In and next to the voxels that hold matter, a bit for each.
+    Near(Buffer),
+    /// In listed tiles, whose count is given as arguments of an indirect dispatch.
+    Listed {
+        /// The tiles' numbers.
+        tiles: Buffer,
+        /// Their count.
+        workgroups: Buffer,
+    },
+}
+
 /// A body's densities, recomputed each frame.
 pub(super) struct Densities {
     dispatch: Dispatch,
@@ -22,17 +36,23 @@ impl Densities {
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
         density: &Density,
-        matter: Buffer,
+        places: Where,
     ) -> Result<Option<Self>, RenderError> {
         let constants = [("DENSITY_FROM_TEXTURE", f64::from(u8::from(matches!(density, Density::Grid(_)))))];
         if matches!(density, Density::Uniform) {
             return Ok(None);
         }
-        let kernel = builder.compute_pipeline(RECIPE, &lapidary_wgsl::recipe_source(RECIPE), RECIPE, &constants)?;
+        let (entry, bound, workgroups) = match places {
+            Where::Near(matter) => (RECIPE, (1, matter), Workgroups::Count([1, grid.cells, grid.cells])),
+            Where::Listed { tiles, workgroups } => {
+                ("optical_path_density_listed", (6, tiles), Workgroups::Indirect(workgroups))
+            }
+        };
+        let kernel = builder.compute_pipeline(RECIPE, &lapidary_wgsl::recipe_source(RECIPE), entry, &constants)?;
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let buffer = builder.buffer("densities", 4 * grid.count() as u64, usage);
         let place = builder.uniform("grid of densities", grid.fill(Record::new("VoxelizationGrid")));
-        let mut resources: Vec<(u32, Bound)> = vec![(0, place.into()), (1, matter.into()), (2, buffer.into())];
+        let mut resources: Vec<(u32, Bound)> = vec![(0, place.into()), (bound.0, bound.1.into()), (2, buffer.into())];
         match density {
             Density::Uniform => {}
             Density::Veins(pattern) => {
@@ -47,7 +67,6 @@ impl Densities {
             }
         }
         let group = builder.bind(kernel, 0, &resources);
-        let workgroups = Workgroups::Count([1, grid.cells, grid.cells]);
         Ok(Some(Self { dispatch: builder.dispatch(kernel, vec![group], workgroups), buffer }))
     }
 

@@ -5,6 +5,7 @@
 mod cells;
 mod levels;
 mod source;
+mod tiles;
 
 use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
@@ -25,6 +26,7 @@ use lapidary_plan::{Effect, Note};
 use lapidary_scene::{Bounds, Density, Material, Object};
 use levels::Levels;
 use source::Source;
+use tiles::Tiles;
 use std::ops::Range;
 
 /// Extinction per voxel spacing that thinner matter counts as: without any, light does not diffuse.
@@ -174,11 +176,11 @@ impl Add<'_> {
         let Drawn { object: Object { mesh: shape, material, .. }, name, decisions } = drawn;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
-        let bits = Cells::matter(builder, grid);
-        let densities = Densities::new(builder, grid, density, bits)?;
+        let tiles = Tiles::new(builder, grid.cells, 0);
+        let densities = Densities::new(builder, grid, density, tiles.places())?;
         let of_voxel = densities.as_ref().map(|densities| densities.buffer);
         let of_body = cells::Body { matter, material, largest: self.largest, harmonics: self.harmonics };
-        let cells = Cells::new(builder, grid, (shape, mesh), self.constants, of_body, (bits, of_voxel))?;
+        let cells = Cells::new(builder, grid, (shape, mesh), self.constants, of_body, (tiles, of_voxel))?;
         let levels = Levels::new(builder, grid, &cells, self.settings.diffusion)?;
         let source = Source::new(
             builder,
@@ -191,6 +193,7 @@ impl Add<'_> {
                 density: of_voxel,
                 right: levels.right(),
                 entering: cells.entering,
+                tiles,
             },
             self.constants,
         )?;
@@ -218,8 +221,28 @@ impl Diffusions {
 
     /// Returns the notes on the last frame that was run. Waits for it.
     pub(super) fn notes(&self, executor: &Executor<'_>) -> Result<Vec<Note>, GpuError> {
-        let found = self.bodies.iter().map(|body| body.cells.voxelizer.note(executor, &body.name));
-        Ok(found.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+        let mut notes = Vec::new();
+        for body in &self.bodies {
+            notes.extend(body.cells.voxelizer.note(executor, &body.name)?);
+            let residual = body.levels.residual(executor)?;
+            notes.extend(residual.map(|residual| Note::Solved {
+                object: body.name.clone(),
+                cycles: body.levels.cycles(),
+                residual,
+            }));
+        }
+        Ok(notes)
+    }
+
+    /// Returns what the last frame left of each body's equations; see [`Levels::residual`].
+    pub(super) fn residuals(&self, executor: &Executor<'_>) -> Result<Vec<[f64; 3]>, GpuError> {
+        let all = self.bodies.iter().filter_map(|body| body.levels.residual(executor).transpose());
+        all.collect()
+    }
+
+    /// The fluence of each body's finest level.
+    pub(super) fn fluences(&self) -> impl Iterator<Item = Buffer> {
+        self.bodies.iter().map(|body| body.levels.fluence())
     }
 
     /// Size in bytes of the maps and of each body's cells, densities, source and levels.
@@ -242,6 +265,7 @@ impl BodyDiffusion {
                     densities.encode(builder);
                 }
                 self.cells.encode(builder);
+                self.levels.encode_equations(builder);
             }
             Stage::Seeds => self.source.encode(builder),
             Stage::Solve => self.levels.encode(builder),

@@ -3,7 +3,7 @@
 
 mod seeds;
 
-use super::density::Densities;
+use super::density::{Densities, Where};
 use super::light_maps::{LightMaps, Lit};
 use super::lighting::Lighting;
 use super::mesh_buffers::{MeshBuffers, ShapeBuffers, Shapes};
@@ -148,7 +148,7 @@ impl Add<'_> {
         let voxelizer = Voxelizer::new(builder, grid, mesh, &decisions.constants())?;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
-        let densities = Densities::new(builder, grid, density, voxelizer.matter)?;
+        let densities = Densities::new(builder, grid, density, Where::Near(voxelizer.matter))?;
         let solve = Solve { method: self.paths.method, heterogeneous: densities.is_some(), most_passes: None };
         let solver = Solver::new(builder, grid, solve)?;
         let (matter, density) = (voxelizer.matter, densities.as_ref().map(|densities| densities.buffer));

@@ -129,11 +129,13 @@ pub struct DiffusionOptions {
     pub cycles: u32,
     /// Whether a frame begins with the fluence of the one before, instead of with none.
     pub warm: bool,
+    /// Whether a frame also measures what is left of the equations, which is then among the picture's notes.
+    pub residual: bool,
 }
 
 impl Default for DiffusionOptions {
     fn default() -> Self {
-        Self { cycles: 2, warm: false }
+        Self { cycles: 2, warm: false, residual: false }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A frame to be timed: a rung's recipe, alone or with the display recipe. It can be run repeatedly
 //! and reads nothing back.
 
+use super::diffusion::Diffusions;
 use super::drawing::{apart, scene_pass};
 use super::layers::Layers;
 use super::lighting::Lighting;
@@ -92,6 +93,42 @@ impl<'gpu> FrameTimer<'gpu> {
             *time = self.timed(passes.clone())?.total;
         }
         Ok(Some(times))
+    }
+
+    /// Draws the frame from a stage on, with what the stages before it left the last time: all of it from
+    /// [`Stage::Voxels`], what moving lights change from [`Stage::Maps`], what a moving camera changes from
+    /// [`Stage::Shade`]. Returns `None` if the rung follows no light through bodies.
+    ///
+    /// # Errors
+    /// If the device rejects a pass or is lost.
+    pub fn run_from(&self, stage: Stage) -> Result<Option<FrameTime>, RenderError> {
+        let Some(stages) = &self.stages else { return Ok(None) };
+        let passes = stages[stage as usize].start..self.executor.frame().passes.len();
+        Ok(Some(self.timed(passes)?))
+    }
+
+    /// Takes over the fluence of another frame of the same bodies, on which the next one of this begins if its
+    /// settings ask for a warm start.
+    ///
+    /// # Errors
+    /// If the device is lost, or if the other frame has grids of another size.
+    pub fn continue_from(&self, before: &Self) -> Result<(), RenderError> {
+        let fluences = |of: &Self| of.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
+        for (own, other) in fluences(self).into_iter().zip(fluences(before)) {
+            let words = before.executor.words(other)?;
+            self.executor.write_buffer(own, bytemuck::cast_slice(&words))?;
+        }
+        Ok(())
+    }
+
+    /// Returns what the last frame left of each body's equations of diffusion, as shares of their right side in
+    /// each channel; empty unless the settings ask for residuals. Waits for the device.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn residuals(&self) -> Result<Vec<[f64; 3]>, RenderError> {
+        let all = self.pass.diffusions().map(|diffusions| diffusions.residuals(&self.executor));
+        Ok(all.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Submits some passes and waits.

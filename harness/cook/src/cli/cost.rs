@@ -3,7 +3,7 @@
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
 use lapidary_cook::cost::{
-    CostError, Ladder, Options, Progress, Report, cdrf, effects, optical_path, outside, page, restraint, sphere,
+    CostError, Ladder, Options, Progress, Report, cdrf, dynamic, effects, optical_path, outside, page, restraint, sphere,
     translucent,
 };
 use lapidary_cook::text_file;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[command(
     subcommand_required = true,
     arg_required_else_help = true,
-    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost restraint --rungs convex-64 --rounds 3\n  ./cook cost sphere --out target/cost"
+    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost restraint --rungs convex-64 --rounds 3\n  ./cook cost dynamic --rounds 3\n  ./cook cost sphere --out target/cost"
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -39,6 +39,9 @@ enum Technique {
     /// Ladder of bodies through which light comes: optical paths and diffusion beside random walks.
     /// Takes minutes.
     Translucent(Rungs),
+    /// Frames in motion: light, camera, shape and topology; each computed from nothing, and with what the one
+    /// before left.
+    Dynamic(Timed),
     /// Cost of each effect alone, of none, and of all: time, instructions and bytes.
     Effects(Timed),
     /// What light that leaves a stone meets: the environment, the picture, or bounds of other bodies;
@@ -73,7 +76,7 @@ struct Shown {
 
 #[derive(clap::Args)]
 struct Timed {
-    /// Rounds of timing; 0 skips timing, except for restraint. 7 by default, 5 for optical_path,
+    /// Rounds of timing; 0 skips timing, except for restraint. 7 by default, 5 for dynamic, optical_path,
     /// translucent and restraint.
     #[arg(long, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: Option<u32>,
@@ -162,6 +165,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                 return Err(Failure(format!("`optical_path` has no rung {other}; there are {names}")));
             }
             arguments.show(context, &optical_path::LADDER, optical_path::options(), optical_path::run)
+        }
+        Technique::Dynamic(arguments) => {
+            let options = timed(dynamic::options(), arguments.rounds);
+            let measure = |gpu: &Gpu, progress: Progress<'_>| dynamic::run(gpu, &options, progress);
+            show(&dynamic::LADDER, &arguments.shown, || on_gpu(context, measure))
         }
         Technique::Effects(arguments) => {
             let options = timed(effects::options(), arguments.rounds);

@@ -5,7 +5,7 @@ use super::asked::{Asked, refuse_without_meaning};
 use super::{Failure, number};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
-use lapidary_render::{Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, DiffusionOptions, GemOptions, OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
 use lapidary_scene::nearest::suggest;
 
@@ -29,6 +29,8 @@ pub(super) struct Drawn {
     diffuse: Option<Diffuse>,
     #[command(flatten)]
     optical_path: Option<OpticalPath>,
+    #[command(flatten)]
+    diffusion: Option<Diffusion>,
 }
 
 /// Options of the gem recipes.
@@ -92,6 +94,21 @@ struct OpticalPath {
     #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
     extinction_scale: Option<f32>,
 }
+
+/// Options for bodies through which light diffuses.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scattering bodies by diffusion")]
+struct Diffusion {
+    /// Cycles of multigrid for each body; 2 by default.
+    #[arg(long, value_name = "N", value_parser = number::whole(1..=MOST_CYCLES))]
+    cycles: Option<u32>,
+    /// Tell what is left of each body's equations after the cycles.
+    #[arg(long)]
+    residual: bool,
+}
+
+/// More cycles than that change nothing, even if each leaves half.
+const MOST_CYCLES: u32 = 100;
 
 /// Options that were given, and the technique that they are for.
 pub(super) struct Given {
@@ -206,6 +223,11 @@ impl Drawn {
             samples: self.samples,
             gem: self.gem.as_ref().map_or(asked.gem, Gem::options),
             diffuse: curvature.map_or(asked.diffuse, |curvature| DiffuseOptions { curvature, ..asked.diffuse }),
+            diffusion: self.diffusion.as_ref().map_or(asked.diffusion, |of| DiffusionOptions {
+                cycles: of.cycles.unwrap_or(asked.diffusion.cycles),
+                residual: of.residual,
+                ..asked.diffusion
+            }),
             optical_path: extinction_scale
                 .map_or(asked.optical_path, |extinction_scale| OpticalPathOptions { extinction_scale }),
             ..asked
@@ -220,6 +242,13 @@ impl Drawn {
                 technique: "optical paths",
                 flags: given([("--extinction-scale", extinction_scale.is_some())]),
                 draws: |rung, _| matches!(rung, Rung::OpticalPath(_)),
+            },
+            Given {
+                technique: "diffusion",
+                flags: self.diffusion.as_ref().map_or_else(Vec::new, |of| {
+                    given([("--cycles", of.cycles.is_some()), ("--residual", of.residual)])
+                }),
+                draws: |rung, _| matches!(rung, Rung::Diffusion(_)),
             },
         ];
         let gem = self.gem.iter().flat_map(Gem::given);

@@ -5,6 +5,7 @@
 //! its plots are series of them ([`Plot`]).
 
 pub mod cdrf;
+pub mod dynamic;
 pub mod effects;
 pub mod gem;
 pub mod optical_path;
@@ -55,13 +56,14 @@ pub struct Ladder {
 }
 
 /// All ladders.
-pub const LADDERS: [Ladder; 8] = [
+pub const LADDERS: [Ladder; 9] = [
     gem::LADDER,
     cdrf::LADDER,
     optical_path::LADDER,
     effects::LADDER,
     outside::LADDER,
     translucent::LADDER,
+    dynamic::LADDER,
     restraint::LADDER,
     sphere::LADDER,
 ];

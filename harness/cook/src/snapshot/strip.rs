@@ -3,15 +3,13 @@
 
 use super::SnapshotError;
 use super::frames::{halved, side_by_side};
-use glam::{DVec2, Vec3};
+use crate::motion::Motion;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
-use lapidary_scene::deform::{merging, twisting};
 use lapidary_scene::solver::{Method, Paths};
-use lapidary_scene::{Bounds, Light, Object, Scene, SceneError};
-use std::f32::consts::PI;
+use lapidary_scene::{Scene, SceneError};
 
 /// Name of the picture's files.
 pub const NAME: &str = "strip";
@@ -26,40 +24,17 @@ pub const FRAMES: [u32; 2] = [5, 4];
 /// Width and height of a frame in pixels.
 pub const SIDE: u32 = 128;
 
-/// Returns the scenes, row by row.
+/// Times of a row's frames.
+const TIMES: [[f64; 5]; 4] =
+    [[0.0, 0.25, 0.5, 0.75, 1.0], [0.0, 0.25, 0.5, 0.75, 1.0], [0.0, 0.25, 0.5, 0.75, 1.0], [0.0, 0.25, 0.45, 0.7, 1.0]];
+
+/// Returns the scenes, row by row: a row for each motion.
 ///
 /// # Errors
 /// Returns an error if a built-in scene does not load.
 pub fn scenes() -> Result<Vec<Scene>, SceneError> {
-    let (bunny, figure) = (Scene::named("bunny")?, Scene::named("figure")?);
-    let mut scenes = Vec::new();
-    for azimuth in [-100.0, -140.0, 180.0, 140.0, 100.0] {
-        scenes.push(Scene { lights: vec![sun(azimuth, 0.25)], ..bunny.clone() });
-    }
-    for azimuth in [-80.0, -35.0, 10.0, 55.0, 100.0] {
-        scenes.push(Scene { lights: vec![sun(-150.0, 0.3)], ..figure.clone() }.seen_from(80.0, azimuth));
-    }
-    let still = &figure.objects[0];
-    let bounds = Bounds::of(still.mesh.positions.iter().copied());
-    let axis = DVec2::new(bounds.centre().x.into(), bounds.centre().z.into());
-    let heights = [bounds.min.y, bounds.max.y].map(f64::from);
-    for time in [0.75, 0.875, 0.0, 0.125, 0.25] {
-        let mesh = twisting(&still.mesh, axis, heights, time);
-        let objects = vec![Object { mesh, ..still.clone() }];
-        scenes.push(Scene { objects, lights: vec![sun(-150.0, 0.3)], ..figure.clone() });
-    }
-    let drops = |time: f64| Object { name: "drops".to_owned(), mesh: merging(time), ..bunny.objects[0].clone() };
-    let apart = Scene { objects: vec![drops(0.0)], ..bunny.clone() }.seen_from(75.0, 20.0);
-    for time in [0.0, 0.25, 0.45, 0.7, 1.0] {
-        scenes.push(Scene { objects: vec![drops(time)], lights: vec![sun(-150.0, 0.4)], ..apart.clone() });
-    }
-    Ok(scenes)
-}
-
-/// Returns a sun at `azimuth` degrees from +z towards +x and at `height` above the horizon.
-fn sun(azimuth: f32, height: f32) -> Light {
-    let (x, z) = azimuth.to_radians().sin_cos();
-    Light::Directional { toward: Vec3::new(x, height, z).normalize(), irradiance: Vec3::splat(1.4 * PI) }
+    let row = |(motion, times): (Motion, [f64; 5])| times.map(|time| motion.scene(time));
+    Motion::ALL.into_iter().zip(TIMES).flat_map(row).collect()
 }
 
 /// Returns the settings of each frame.

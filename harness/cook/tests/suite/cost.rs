@@ -175,6 +175,7 @@ fn the_pages_show_the_record() {
         ("effects", &["plan.md"]),
         ("outside", &["gem.md"]),
         ("translucent", &["diffusion.md"]),
+        ("dynamic", &["diffusion.md"]),
         ("restraint", &["gem.md", "optical_path.md", "plan.md"]),
         ("sphere", &["cdrf.md"]),
     ];

@@ -23,7 +23,12 @@ fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) 
     }
     let mut builder = Builder::new(Some(gpu));
     let matter = builder.storage("matter", bytemuck::cast_slice(&bits));
-    let densities = Densities::new(&mut builder, grid, density, matter).expect("compiled").expect("it differs");
+    run(gpu, builder, grid, density, Where::Near(matter))
+}
+
+/// Runs the recipe, and returns the densities.
+fn run(gpu: &Gpu, mut builder: Builder<'_>, grid: VoxelGrid, density: &Density, places: Where) -> Vec<f32> {
+    let densities = Densities::new(&mut builder, grid, density, places).expect("compiled").expect("it differs");
     densities.encode(&mut builder);
     let executor = Executor::new(gpu, builder.finish()).expect("made");
     executor.run(|_, _| {}).expect("run");
@@ -84,8 +89,32 @@ fn a_voxel_beside_matter_has_its_density_too() {
 }
 
 #[test]
+fn a_listed_tile_has_its_densities_and_no_other() {
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+    for (density, tolerance) in densities() {
+        for cells in CELLS {
+            let grid = grid(cells);
+            let side = cells.div_ceil(4);
+            let listed = [0, side, side * side * side - 1];
+            let mut builder = Builder::new(Some(gpu));
+            let tiles = builder.storage("tiles", bytemuck::cast_slice(&listed));
+            let counts = bytemuck::cast_slice(&[3u32, 1, 1]).to_vec();
+            let workgroups = builder.filled("tile count", counts, wgpu::BufferUsages::INDIRECT);
+            let found = run(gpu, builder, grid, &density, Where::Listed { tiles, workgroups });
+            for (index, found) in found.into_iter().enumerate() {
+                let voxel = grid.voxel(index);
+                let tile = voxel / 4;
+                let is_listed = listed.contains(&(tile.x + side * (tile.y + side * tile.z)));
+                let wanted = if is_listed { density.at(grid.centre(voxel)) } else { 0.0 };
+                assert!((found - wanted).abs() <= tolerance, "{cells} {voxel}: {found} for {wanted}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_body_of_one_density_needs_none() {
     let mut builder = Builder::new(None);
     let matter = builder.storage("matter", &[0; 4]);
-    assert!(Densities::new(&mut builder, grid(16), &Density::Uniform, matter).expect("nothing to compile").is_none());
+    assert!(Densities::new(&mut builder, grid(16), &Density::Uniform, Where::Near(matter)).expect("nothing to compile").is_none());
 }

@@ -1,6 +1,7 @@
 //! The recipe `diffusion_cells`: a body as cells, from voxels of half the spacing and from its mesh.
 
 use super::super::mesh_buffers::ShapeBuffers;
+use super::tiles::{self, Tiles};
 use super::{Effect, Matter};
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
 use crate::record::Record;
@@ -31,7 +32,11 @@ pub(super) struct Cells {
     /// What the light from all around adds to the right side: three f32 for each voxel; `None` if none
     /// enters.
     pub(super) entering: Option<Buffer>,
+    /// Tiles that hold matter.
+    pub(super) tiles: Tiles,
     large: Buffer,
+    /// Buffers that begin as 0 in each frame.
+    cleared: Vec<Buffer>,
     /// Buffers that only this recipe reads.
     own: Vec<Buffer>,
     dispatches: Vec<Dispatch>,
@@ -49,12 +54,6 @@ pub(super) struct Body<'a> {
 }
 
 impl Cells {
-    /// Creates the buffer of the voxels that hold any matter, one bit for each.
-    pub(super) fn matter(builder: &mut Builder<'_>, grid: VoxelGrid) -> Buffer {
-        let rows = u64::from(grid.cells) * u64::from(grid.cells);
-        builder.buffer("matter of cells", 4 * rows * u64::from(grid.words_per_row()), wgpu::BufferUsages::STORAGE)
-    }
-
     /// Creates the pipelines and buffers; `constants` are values of the recipe's overrides.
     pub(super) fn new(
         builder: &mut Builder<'_>,
@@ -62,20 +61,19 @@ impl Cells {
         (shape, mesh): (&Mesh, &ShapeBuffers),
         constants: &[(&str, f64)],
         Body { matter, material, largest, harmonics }: Body<'_>,
-        (bits, density): (Buffer, Option<Buffer>),
+        (tiles, density): (Tiles, Option<Buffer>),
     ) -> Result<Self, ShaderError> {
         let fine = VoxelGrid { cells: 2 * grid.cells, spacing: 0.5 * grid.spacing, ..grid };
         let voxelizer = Voxelizer::new(builder, fine, shape, constants)?;
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let mut kernel =
             |entry: &str| builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_{entry}"), constants);
-        let kernels = [kernel("fill")?, kernel("surface")?, kernel("large")?, kernel("finish")?];
+        let kernels = [kernel("fill")?, kernel("list")?, kernel("surface")?, kernel("large")?, kernel("finish")?];
         use wgpu::BufferUsages as Usage;
         let (voxels, triangles) = (grid.count() as u64, shape.triangle_count() as u64);
         let mut storage = |what, bytes| builder.buffer(what, bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
         let filled = storage("filled eighths", 4 * voxels);
-        let areas = storage("surface areas", 4 * voxels);
-        let depths = storage("depths of nodes", 4 * voxels);
+        let surfaces = storage("surfaces in voxels", 8 * voxels);
         let large = storage("large triangles of cells", 4 + 4 * triangles.max(1));
         let nodes = storage("nodes", 4 * voxels);
         let faces = storage("conductances", 12 * voxels);
@@ -96,10 +94,10 @@ impl Cells {
             (0, record),
             (1, mesh.positions),
             (2, mesh.indices),
-            (4, bits),
+            (4, tiles.list),
             (5, filled),
-            (6, areas),
-            (7, depths),
+            (6, surfaces),
+            (7, tiles.workgroups),
             (8, large),
             (9, nodes),
             (10, faces),
@@ -111,28 +109,33 @@ impl Cells {
         let resources: Vec<(u32, Bound)> =
             bound.into_iter().chain(of_choice).map(|(binding, buffer)| (binding, buffer.into())).collect();
         let words = grid.words_per_row() * grid.cells * grid.cells;
-        let counts =
-            [words.div_ceil(GROUP), (triangles as u32).div_ceil(GROUP), LARGE_GROUPS, (voxels as u32).div_ceil(GROUP)];
-        let dispatch = |(kernel, count)| {
+        let counts = [words, tiles::count(grid.cells), triangles as u32, LARGE_GROUPS * GROUP];
+        let counts = counts.map(|count| Workgroups::Count([count.div_ceil(GROUP), 1, 1]));
+        let dispatch = |(kernel, workgroups)| {
             let group = builder.bind(kernel, 0, &resources);
-            builder.dispatch(kernel, vec![group], Workgroups::Count([count, 1, 1]))
+            builder.dispatch(kernel, vec![group], workgroups)
         };
-        let dispatches = kernels.into_iter().zip(counts).map(dispatch).collect();
-        let own = [bits, filled, areas, depths, large].into_iter().chain(entering).collect();
-        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, entering, large, own, dispatches })
+        let dispatches = kernels.into_iter().zip(counts.into_iter().chain([tiles.dispatched()])).map(dispatch).collect();
+        let cleared = [filled, surfaces, nodes, faces, reactions].into_iter().chain(entering).collect();
+        let own = [filled, surfaces, large].into_iter().chain(tiles.buffers()).chain(entering).collect();
+        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, entering, tiles, large, cleared, own, dispatches })
     }
 
-    /// Encodes the voxels, and which cells hold matter.
+    /// Encodes the voxels, and which tiles hold matter.
     pub(super) fn encode_voxels(&self, builder: &mut Builder<'_>) {
+        for buffer in &self.cleared {
+            builder.clear(*buffer);
+        }
         self.voxelizer.encode(builder, self.mesh.positions, self.mesh.indices);
-        builder.compute(RECIPE, self.dispatches[..1].to_vec(), 1);
+        self.tiles.encode_none(builder);
+        builder.compute(RECIPE, self.dispatches[..2].to_vec(), 1);
     }
 
     /// Encodes the rest, once the densities are known.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) {
         // Only the list's length must be reset, not its contents.
         builder.pass(Pass::Clear { buffer: self.large, bytes: 4 });
-        builder.compute(RECIPE, self.dispatches[1..].to_vec(), 1);
+        builder.compute(RECIPE, self.dispatches[2..].to_vec(), 1);
     }
 
     /// Size of the buffers in bytes.

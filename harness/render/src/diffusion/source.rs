@@ -2,6 +2,7 @@
 
 use super::super::light_maps::Lit;
 use super::Matter;
+use super::tiles::Tiles;
 use super::cells::unit;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Workgroups};
 use crate::record::Record;
@@ -12,8 +13,6 @@ use glam::Vec3;
 const RECIPE: &str = "diffusion_source";
 /// Invocations of a workgroup along each side of a map.
 const GROUP: u32 = 8;
-/// Workgroups that finish the source.
-const FINISHING: u32 = 1024;
 
 /// Pipelines and buffers for a body's source.
 pub(super) struct Source {
@@ -33,6 +32,8 @@ pub(super) struct Buffers {
     pub(super) right: Buffer,
     /// What the light from all around adds to it; `None` if none enters.
     pub(super) entering: Option<Buffer>,
+    /// Tiles that hold matter.
+    pub(super) tiles: Tiles,
 }
 
 impl Source {
@@ -56,18 +57,18 @@ impl Source {
         let record = record.with("gamma", matter.gamma).with("largest", unit(largest)).with("index", matter.index);
         let uniform = builder.uniform("source", record);
         let of_lights = [(0, uniform.into()), (2, lit.lights.into()), (4, lit.views.into()), (5, lit.maps)];
-        let Buffers { nodes, fine, density, right, entering } = *buffers;
+        let Buffers { nodes, fine, density, right, entering, tiles } = *buffers;
         let mut of_body: Vec<(u32, Bound)> =
-            vec![(0, loads.into()), (1, nodes.into()), (2, fine.into()), (4, right.into())];
+            vec![(0, loads.into()), (1, nodes.into()), (2, fine.into()), (4, right.into()), (6, tiles.list.into())];
         of_body.extend(density.map(|density| (3, density.into())));
         of_body.extend(entering.map(|entering| (5, entering.into())));
         let [width, height, layers] = lit.size;
-        let sizes = [[width.div_ceil(GROUP), height.div_ceil(GROUP), layers], [FINISHING, 1, 1]];
-        let dispatch = |(kernel, size)| {
+        let texels = Workgroups::Count([width.div_ceil(GROUP), height.div_ceil(GROUP), layers]);
+        let dispatch = |(kernel, workgroups)| {
             let groups = vec![builder.bind(kernel, 0, &of_lights), builder.bind(kernel, 1, &of_body)];
-            builder.dispatch(kernel, groups, Workgroups::Count(size))
+            builder.dispatch(kernel, groups, workgroups)
         };
-        Ok(Self { loads, dispatches: kernels.into_iter().zip(sizes).map(dispatch).collect() })
+        Ok(Self { loads, dispatches: kernels.into_iter().zip([texels, tiles.dispatched()]).map(dispatch).collect() })
     }
 
     /// Encodes the source, once the maps are drawn.

@@ -16,6 +16,7 @@ fn gpu() -> &'static Gpu {
 struct Lone {
     executor: Executor<'static>,
     grid: VoxelGrid,
+    levels: Levels,
     faces: Buffer,
     reactions: Buffer,
     nodes: Buffer,
@@ -26,7 +27,7 @@ struct Lone {
 impl Lone {
     /// Sets up a body of grey matter, of this extinction and share of absorption.
     fn of(mesh: Mesh, cells: u32, matter: (f32, f32), cycles: u32) -> Self {
-        Self::with(mesh, cells, matter, DiffusionOptions { cycles, warm: false })
+        Self::with(mesh, cells, matter, DiffusionOptions { cycles, residual: true, ..DiffusionOptions::default() })
     }
 
     fn with(mesh: Mesh, cells: u32, (extinction, absorbed): (f32, f32), options: DiffusionOptions) -> Self {
@@ -37,21 +38,22 @@ impl Lone {
         let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), cells);
         let matter = Matter::of(&object.material, grid, 1.0);
         let mesh = ShapeBuffers::of(&mut builder, &object).expect("buffers");
-        let bits = Cells::matter(&mut builder, grid);
+        let tiles = Tiles::new(&mut builder, grid.cells, 0);
         let of_body = cells::Body { matter, material: &object.material, largest: Vec3::ONE, harmonics: None };
         let constants = [("EFFECT_SURFACE", 0.0), ("EFFECT_ENVIRONMENT", 0.0)];
-        let cells = Cells::new(&mut builder, grid, (&object.mesh, &mesh), &constants, of_body, (bits, None));
+        let cells = Cells::new(&mut builder, grid, (&object.mesh, &mesh), &constants, of_body, (tiles, None));
         let cells = cells.expect("the recipe");
         let levels = Levels::new(&mut builder, grid, &cells, options).expect("the recipe");
         cells.encode_voxels(&mut builder);
         cells.encode(&mut builder);
+        levels.encode_equations(&mut builder);
         levels.encode(&mut builder);
         let (faces, reactions, nodes) = (cells.faces, cells.reactions, cells.nodes);
         let (right, fluence) = (levels.right(), levels.fluence());
         let executor = Executor::new(gpu(), builder.finish()).expect("made");
         // Once, for the volumes.
         executor.run(|_, _| {}).expect("run");
-        Self { executor, grid, faces, reactions, nodes, right, fluence }
+        Self { executor, grid, levels, faces, reactions, nodes, right, fluence }
     }
 
     fn floats(&self, buffer: Buffer) -> Vec<f64> {
@@ -88,6 +90,25 @@ impl Lone {
         self.floats(self.fluence).chunks_exact(4).map(|of| of[0]).collect()
     }
 
+    /// Returns the sums of the magnitudes of the equations' terms over the right side, both as root mean squares.
+    fn terms(&self, right: &[f64], fluence: &[f64]) -> f64 {
+        let (faces, reactions) = (self.floats(self.faces), self.floats(self.reactions));
+        let cells = self.grid.cells as usize;
+        let mut terms: Vec<f64> = right.iter().map(|load| load.abs()).collect();
+        for (index, voxel) in (0..right.len()).map(|index| (index, self.grid.voxel(index).to_array())) {
+            terms[index] += reactions[4 * index] * fluence[index];
+            for (axis, stride) in [1, cells, cells * cells].into_iter().enumerate() {
+                if voxel[axis] + 1 < self.grid.cells {
+                    let flow = faces[3 * index + axis] * (fluence[index + stride] + fluence[index]);
+                    terms[index] += flow;
+                    terms[index + stride] += flow;
+                }
+            }
+        }
+        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        (square(&terms) / square(right)).sqrt()
+    }
+
     /// Returns what is left of the equations, over the right side, both as root mean squares; and the
     /// share of what is put in that neither leaves nor is absorbed.
     fn residual(&self, right: &[f64], fluence: &[f64]) -> (f64, f64) {
@@ -110,6 +131,53 @@ impl Lone {
         let put_in: f64 = right.iter().sum();
         ((square(&left) / square(right)).sqrt(), (1.0 - lost / put_in).abs())
     }
+}
+
+/// The iterations of conjugate gradients, preconditioned by the equations' own factors, until `most` of the right
+/// side is left.
+fn conjugate_gradients(lone: &Lone, right: &[f64], most: f64) -> usize {
+    let (faces, reactions) = (lone.floats(lone.faces), lone.floats(lone.reactions));
+    let cells = lone.grid.cells as usize;
+    let strides = [1, cells, cells * cells];
+    let neighbours = |index: usize| {
+        let voxel = lone.grid.voxel(index).to_array();
+        let faces = &faces;
+        (0..3).flat_map(move |axis| {
+            let above = (voxel[axis] + 1 < cells as u32).then(|| (index + strides[axis], faces[3 * index + axis]));
+            let below = (voxel[axis] > 0).then(|| (index - strides[axis], faces[3 * (index - strides[axis]) + axis]));
+            above.into_iter().chain(below)
+        })
+    };
+    let own = |index: usize| reactions[4 * index] + neighbours(index).map(|(_, face)| face).sum::<f64>();
+    let owns: Vec<f64> = (0..right.len()).map(own).collect();
+    let active: Vec<usize> = (0..right.len()).filter(|index| owns[*index] > 0.0).collect();
+    let dot = |a: &[f64], b: &[f64]| active.iter().map(|index| a[*index] * b[*index]).sum::<f64>();
+    let scaled = |of: &[f64]| {
+        let mut scaled = vec![0.0; of.len()];
+        active.iter().for_each(|index| scaled[*index] = of[*index] / owns[*index]);
+        scaled
+    };
+    let mut left = right.to_vec();
+    let mut direction = scaled(&left);
+    let mut product = dot(&left, &direction);
+    let enough = most * most * dot(right, right);
+    for iteration in 1..10_000 {
+        let mut applied = vec![0.0; right.len()];
+        for index in &active {
+            let inflow: f64 = neighbours(*index).map(|(other, face)| face * direction[other]).sum();
+            applied[*index] = owns[*index] * direction[*index] - inflow;
+        }
+        let step = product / dot(&direction, &applied);
+        active.iter().for_each(|index| left[*index] -= step * applied[*index]);
+        if dot(&left, &left) <= enough {
+            return iteration;
+        }
+        let next = scaled(&left);
+        let after = dot(&left, &next);
+        active.iter().for_each(|index| direction[*index] = next[*index] + after / product * direction[*index]);
+        product = after;
+    }
+    10_000
 }
 
 /// Light that begins alike everywhere in a ball, at a rate of 1 per volume: the closed form, with
@@ -173,8 +241,30 @@ fn what_is_put_in_leaves_or_is_absorbed() {
             let (residual, unaccounted) = lone.residual(&right, &lone.solve(&right));
             println!("{matter:?}, {cycles} cycles: residual {residual:.1e}, unaccounted {unaccounted:.1e}");
             assert!(residual < bound && unaccounted < balance, "{matter:?}, {cycles}: {residual} {unaccounted}");
+            // The device's own sums, in f32: their terms are each rounded twice, and their sums eight times.
+            let rounding = 10.0 * f64::from(f32::EPSILON / 2.0) * lone.terms(&right, &lone.solve(&right));
+            for told in lone.levels.residual(&lone.executor).expect("read").expect("asked for") {
+                let off = (told - residual).abs();
+                assert!(off < rounding + 1e-4 * residual, "{matter:?}, {cycles}: {residual} {told} {rounding}");
+            }
         }
     }
+}
+
+/// Why the solver is multigrid: conjugate gradients need more iterations the finer the grid is, each of which is at
+/// least the work of a sweep; a cycle is 8 sweeps of the finest grid.
+#[test]
+fn conjugate_gradients_need_more_than_multigrid_and_ever_more() {
+    let mut needed = Vec::new();
+    for cells in [16, 32, 64] {
+        let lone = Lone::of(sphere(1.0, 64), cells, (8.0, 0.001), 2);
+        let right = everywhere(&lone, 8.0);
+        let (multigrid, _) = lone.residual(&right, &lone.solve(&right));
+        let iterations = conjugate_gradients(&lone, &right, multigrid);
+        println!("{cells} cells: two cycles leave {multigrid:.1e}, for which conjugate gradients take {iterations}");
+        needed.push(iterations);
+    }
+    assert!(needed[2] > 2 * 8 && needed[2] as f64 > 1.5 * needed[1] as f64, "{needed:?}");
 }
 
 #[test]
@@ -215,7 +305,7 @@ fn islands_and_matter_that_loses_nothing_have_finite_light() {
 #[test]
 fn a_warm_start_goes_on_where_the_last_frame_ended() {
     let residuals = [false, true].map(|warm| {
-        let lone = Lone::with(sphere(1.0, 64), 32, (8.0, 0.01), DiffusionOptions { cycles: 2, warm });
+        let lone = Lone::with(sphere(1.0, 64), 32, (8.0, 0.01), DiffusionOptions { cycles: 2, warm, residual: true });
         let right = everywhere(&lone, 8.0);
         [(); 3].map(|()| lone.residual(&right, &lone.solve(&right)).0)
     });
