@@ -18,9 +18,9 @@ override EFFECT_ENVIRONMENT: bool = true;
 // The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
 override EFFECT_DIELECTRIC: bool = false;
 
-// The way inside is cut where its optical depth is 0, .3, .9, 2 and 5.
+// The way inside is cut where its optical depth is 0, .4, 1.2, 2.5 and 5.
 const DIFFUSION_PIECES: u32 = 4u;
-const DIFFUSION_STEPS: vec4f = vec4f(0.3f, 0.6f, 1.1f, 3.0f);
+const DIFFUSION_STEPS: vec4f = vec4f(0.4f, 0.8f, 1.3f, 2.5f);
 
 struct DiffusionView {
     clip_from_world: mat4x4f,
