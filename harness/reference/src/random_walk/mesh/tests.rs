@@ -373,3 +373,15 @@ fn hardly_a_walk_is_lost() {
         }
     }
 }
+
+/// A scan's eyelids cross themselves: two faces there lead to one another without an end.
+#[test]
+fn walks_through_a_surface_that_crosses_itself_come_to_an_end() {
+    let rendering = rendered(&named("skin_head"), &settings(48, 16));
+    assert!(
+        rendering.walks > 1000 && rendering.lost < rendering.walks / 1000,
+        "{} of {}",
+        rendering.lost,
+        rendering.walks
+    );
+}

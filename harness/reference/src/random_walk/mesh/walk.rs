@@ -204,7 +204,7 @@ impl<'scene> Matter<'scene> {
 
     /// Calls `pass` for each body along a ray that leaves one at `out`, as far as `distance`, with
     /// the position where the ray enters the body and the path length inside. Returns `None` if a
-    /// surface has a gap.
+    /// surface has a gap or crosses itself.
     fn beyond(
         &self,
         mut position: DVec3,
@@ -213,6 +213,7 @@ impl<'scene> Matter<'scene> {
         mut distance: f64,
         mut pass: impl FnMut(usize, DVec3, f64),
     ) -> Option<()> {
+        let mut standstill = Standstill::new();
         while let Some(next) =
             self.bodies.enter(position, direction, Some(out.place)).filter(|next| next.distance < distance)
         {
@@ -223,8 +224,35 @@ impl<'scene> Matter<'scene> {
             pass(body, position, out.distance.min(distance));
             position += out.distance * direction;
             distance -= out.distance;
+            if standstill.holds(position) {
+                return None;
+            }
         }
         Some(())
+    }
+}
+
+/// Surfaces that a ray may meet at one place. Where a scan folds there are a few; more are two faces that cross, of which
+/// each leads to the other for ever.
+const MOST_AT_ONE_PLACE: u32 = 16;
+
+/// Where a ray met surfaces last, and how many there.
+#[derive(Debug)]
+struct Standstill {
+    position: DVec3,
+    met: u32,
+}
+
+impl Standstill {
+    fn new() -> Self {
+        Self { position: DVec3::NAN, met: 0 }
+    }
+
+    /// Notes that the ray meets a surface. Returns whether it has not come off this place for too long.
+    fn holds(&mut self, position: DVec3) -> bool {
+        self.met = if position == self.position { self.met + 1 } else { 0 };
+        self.position = position;
+        self.met > MOST_AT_ONE_PLACE
     }
 }
 

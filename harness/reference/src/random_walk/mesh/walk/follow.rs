@@ -11,7 +11,7 @@
 
 use super::super::Boundary;
 use super::refracted::{Facing, Path};
-use super::{Beginnings, Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
+use super::{Beginnings, Coefficients, Matter, Outcome, Ray, SURE, Standstill, Targets, WEAK, channel, weighted};
 use crate::random_walk::isotropic;
 use crate::spectral::geometry::{Hit, Place};
 use glam::{DVec2, DVec3};
@@ -131,6 +131,7 @@ impl Matter<'_> {
         let mut throughput = DVec3::ONE;
         let mut surfaces = 0;
         let mut arrival = self.arrive(&mut ray, Some(hit), &mut surfaces, random);
+        let mut standstill = Standstill::new();
         'bodies: loop {
             let Place { body, face } = match arrival {
                 Arrival::Body(place) => place,
@@ -153,6 +154,9 @@ impl Matter<'_> {
                     throughput = weighted(throughput, transmittance, transmittance);
                     ray.position += out.distance * ray.direction;
                     surfaces += 1;
+                    if standstill.holds(ray.position) {
+                        break 'bodies;
+                    }
                     if structure.crosses(&mut ray.direction, -out.normal, structure.index.recip(), random) {
                         let next = self.bodies.enter(ray.position, ray.direction, Some(out.place));
                         arrival = self.arrive(&mut ray, next, &mut surfaces, random);
