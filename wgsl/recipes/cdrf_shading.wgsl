@@ -3,7 +3,7 @@
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel, half_space, microfacet, reflective_shadow_map
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection, scattering_law
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection, scattering_law, material_textures
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -67,6 +67,8 @@ struct CdrfMaterial {
     // Mean free path of each channel, in units of length; made safe by the host as sigma0 is.
     free_path: vec3f,
     law: ScatteringLaw,
+    base_color_place: TexturePlace,
+    normal_place: TexturePlace,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -85,7 +87,7 @@ struct CdrfMaterial {
 @group(1) @binding(6) var table_texels: texture_2d<f32>;
 // Mean curvature of each vertex, for CURVATURE_FORM_VERTEX; per unit of length.
 @group(1) @binding(7) var<storage, read> curvatures: array<f32>;
-// Two floats per vertex, for texture diffusion.
+// Two floats per vertex, for texture diffusion and for the material's textures.
 @group(1) @binding(8) var<storage, read> uvs: array<f32>;
 // Blurred irradiance.
 @group(1) @binding(9) var diffused: texture_2d<f32>;
@@ -102,6 +104,9 @@ struct CdrfVertex {
     @location(5) around_second: vec3f,  //+environment
     @location(6) around_fourth: vec3f,  //+environment
     @location(7) uv: vec2f,  //+texture_diffusion
+    @location(8) base_color_uv: vec2f,  //+base_color_texture
+    @location(9) normal_uv: vec2f,  //+normal_texture
+    @location(10) color: vec3f,  //+vertex_color
 }
 
 @vertex
@@ -125,6 +130,24 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         uv = vec2f(uvs[2u * index], uvs[2u * index + 1u]);
     }
     //+texture_diffusion }
+    //+base_color_texture {
+    var base_color_uv = vec2f(0.0f);
+    if (EFFECT_BASE_COLOR_TEXTURE) {
+        base_color_uv = texture_place(material.base_color_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    }
+    //+base_color_texture }
+    //+normal_texture {
+    var normal_uv = vec2f(0.0f);
+    if (EFFECT_NORMAL_TEXTURE) {
+        normal_uv = texture_place(material.normal_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    }
+    //+normal_texture }
+    //+vertex_color {
+    var color = vec3f(1.0f);
+    if (EFFECT_VERTEX_COLOR) {
+        color = vec3f(colors[3u * index], colors[3u * index + 1u], colors[3u * index + 2u]);
+    }
+    //+vertex_color }
     let clip = view.clip_from_world * vec4f(position, 1.0f);
     return CdrfVertex(
         clip,
@@ -136,6 +159,9 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         around.second,  //+environment
         around.fourth,  //+environment
         uv,  //+texture_diffusion
+        base_color_uv,  //+base_color_texture
+        normal_uv,  //+normal_texture
+        color,  //+vertex_color
     );
 }
 
@@ -168,6 +194,35 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
 fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     let squared = dot(normal, normal);
     return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
+}
+
+// Normals at a pixel: of the mesh, of the surface with its fine slopes, and of these as far as the light of each
+// channel does not even them out.
+struct CdrfNormals {
+    coarse: vec3f,
+    sharp: vec3f,
+    red: vec3f,
+    green: vec3f,
+    blue: vec3f,
+}
+
+// Call it outside all branches, for the derivatives of the coordinates.
+fn cdrf_normals(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> CdrfNormals {
+    var normals = CdrfNormals(normal, normal, normal, normal, normal);
+    if (EFFECT_NORMAL_TEXTURE) {
+        let uv = input.normal_uv;
+        let tangents = texture_tangents(normal, surface.position_x, surface.position_y, dpdx(uv), dpdy(uv));
+        normals.sharp = texture_normal(0u, uv, normal, tangents);
+        normals.red = texture_normal(1u, uv, normal, tangents);
+        normals.green = texture_normal(2u, uv, normal, tangents);
+        normals.blue = texture_normal(3u, uv, normal, tangents);
+    }
+    return normals;
+}
+
+// Cosines of a direction with each channel's normal.
+fn cdrf_cosines(normals: CdrfNormals, direction: vec3f) -> vec3f {
+    return vec3f(dot(normals.red, direction), dot(normals.green, direction), dot(normals.blue, direction));
 }
 
 // Width of the Gaussian for each channel: cdrf_sigma, with sigma0 already made safe by the host.
@@ -206,40 +261,50 @@ fn cdrf_drifted(cosine: f32, drift: CdrfDrift) -> f32 {
     return drift.share * cdrf_cheap(cdrf_shifted(cosine, drift.shift), drift.sigma);
 }
 
-// The reflectance towards one light, per channel.
-fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
+// Looks up the table through its sampler.
+fn cdrf_sampled(cosine: f32, sigma: f32) -> vec3f {
+    let coordinates = cdrf_table_coordinates(cosine, sigma);
+    return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
+}
+
+// The reflectance towards one light, per channel, of each channel's cosine.
+fn cdrf_reflectance(cosines: vec3f, curvature: f32) -> vec3f {
     if (!EFFECT_CDRF) {  //+cdrf
-        return vec3f(cdrf_lambert(cosine));
+        return vec3f(cdrf_lambert(cosines.x), cdrf_lambert(cosines.y), cdrf_lambert(cosines.z));
     }  //+cdrf
     //+cdrf {
     if (CDRF_FORM == CDRF_FORM_TABLE) {
-        let coordinates = cdrf_table_coordinates(cosine, material.table_sigma0 * abs(cdrf_finite(curvature)));
-        return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
+        let widest = material.table_sigma0 * abs(cdrf_finite(curvature));
+        var found = cdrf_sampled(cosines.x, widest);
+        if (EFFECT_NORMAL_TEXTURE) {
+            found = vec3f(found.x, cdrf_sampled(cosines.y, widest).y, cdrf_sampled(cosines.z, widest).z);
+        }
+        return found;
     }
     if (SPREAD_FORM == SPREAD_FORM_DRIFT) {
         return vec3f(
-            cdrf_drifted(cosine, cdrf_drift(material.free_path.x, curvature, material.law.gamma.x)),
-            cdrf_drifted(cosine, cdrf_drift(material.free_path.y, curvature, material.law.gamma.y)),
-            cdrf_drifted(cosine, cdrf_drift(material.free_path.z, curvature, material.law.gamma.z)),
+            cdrf_drifted(cosines.x, cdrf_drift(material.free_path.x, curvature, material.law.gamma.x)),
+            cdrf_drifted(cosines.y, cdrf_drift(material.free_path.y, curvature, material.law.gamma.y)),
+            cdrf_drifted(cosines.z, cdrf_drift(material.free_path.z, curvature, material.law.gamma.z)),
         );
     }
     let sigma = cdrf_sigmas(curvature);
     if (CDRF_FORM == CDRF_FORM_TEXELS) {
-        return vec3f(cdrf_lookup(cosine, sigma.x), cdrf_lookup(cosine, sigma.y), cdrf_lookup(cosine, sigma.z));
+        return vec3f(cdrf_lookup(cosines.x, sigma.x), cdrf_lookup(cosines.y, sigma.y), cdrf_lookup(cosines.z, sigma.z));
     }
     if (CDRF_FORM == CDRF_FORM_WRAP) {
-        return vec3f(cdrf_wrap(cosine, sigma.x), cdrf_wrap(cosine, sigma.y), cdrf_wrap(cosine, sigma.z));
+        return vec3f(cdrf_wrap(cosines.x, sigma.x), cdrf_wrap(cosines.y, sigma.y), cdrf_wrap(cosines.z, sigma.z));
     }
     if (CDRF_FORM == CDRF_FORM_CHEAP) {
-        return vec3f(cdrf_cheap(cosine, sigma.x), cdrf_cheap(cosine, sigma.y), cdrf_cheap(cosine, sigma.z));
+        return vec3f(cdrf_cheap(cosines.x, sigma.x), cdrf_cheap(cosines.y, sigma.y), cdrf_cheap(cosines.z, sigma.z));
     }
     if (CDRF_FORM == CDRF_FORM_QUADRATURE) {
-        return vec3f(cdrf_quadrature(cosine, sigma.x), cdrf_quadrature(cosine, sigma.y), cdrf_quadrature(cosine, sigma.z));
+        return vec3f(cdrf_quadrature(cosines.x, sigma.x), cdrf_quadrature(cosines.y, sigma.y), cdrf_quadrature(cosines.z, sigma.z));
     }
     if (CDRF_FORM == CDRF_FORM_SPHERICAL) {
-        return vec3f(cdrf_spherical(cosine, sigma.x), cdrf_spherical(cosine, sigma.y), cdrf_spherical(cosine, sigma.z));
+        return vec3f(cdrf_spherical(cosines.x, sigma.x), cdrf_spherical(cosines.y, sigma.y), cdrf_spherical(cosines.z, sigma.z));
     }
-    return vec3f(cdrf_accurate(cosine, sigma.x), cdrf_accurate(cosine, sigma.y), cdrf_accurate(cosine, sigma.z));
+    return vec3f(cdrf_accurate(cosines.x, sigma.x), cdrf_accurate(cosines.y, sigma.y), cdrf_accurate(cosines.z, sigma.z));
     //+cdrf }
 }
 
@@ -255,8 +320,8 @@ fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 
 // The reflectance without the shadowed share of the light that falls on the point itself, the
 // clamped cosine; light that entered nearby stays. So nothing changes at the terminator, where a
 // mask over the whole reflectance would have an edge.
-fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
-    return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
+fn cdrf_shadowed(reflectance: vec3f, cosines: vec3f, visible: f32) -> vec3f {
+    return max(reflectance - (1.0f - visible) * max(cosines, vec3f(0.0f)), vec3f(0.0f));
 }
 
 // The cosine at which the light that leaves here has entered, for the law of the matter: its mean over
@@ -273,8 +338,17 @@ fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
+// Irradiance from all around, per channel, by a normal.
+fn cdrf_around(around: HarmonicsAround, sigma: vec3f) -> vec3f {
+    let red = cdrf_harmonic_weights(sigma.x);
+    let green = cdrf_harmonic_weights(sigma.y);
+    let blue = cdrf_harmonic_weights(sigma.z);
+    return harmonics_irradiance(around, red, green, blue);
+}
+
 // Irradiance, each light's part spread by its reflectance and seen by the law of the matter.
-fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_eye: vec3f) -> vec3f {
+fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, toward_eye: vec3f) -> vec3f {
+    let normal = normals.coarse;
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
@@ -283,7 +357,11 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_
             curvature = curvature_towards(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction);
         }
         let cosine = dot(normal, arrival.direction);
-        var reflectance = cdrf_reflectance(cosine, curvature);
+        var cosines = vec3f(cosine);
+        if (EFFECT_NORMAL_TEXTURE) {
+            cosines = cdrf_cosines(normals, arrival.direction);
+        }
+        var reflectance = cdrf_reflectance(cosines, curvature);
         //+half_space {
         var law = vec3f(1.0f);
         if (EFFECT_HALF_SPACE) {
@@ -291,7 +369,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_
         }
         //+half_space }
         if (EFFECT_SHADOW) {
-            reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));
+            reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, cosine, input.position, normal));
         }
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
@@ -307,18 +385,21 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_
         if (!ENVIRONMENT_AT_VERTICES) {
             around = harmonics_around(normal);
         }
-        if (EFFECT_CDRF) {  //+cdrf
-            //+cdrf {
-            let sigma = cdrf_sigmas(surface.curvature);
-            let red = cdrf_harmonic_weights(sigma.x);
-            let green = cdrf_harmonic_weights(sigma.y);
-            let blue = cdrf_harmonic_weights(sigma.z);
-            irradiance = harmonics_irradiance(around, red, green, blue);
-            //+cdrf }
-        } else {  //+cdrf
-            let weights = cdrf_harmonic_weights(0.0f);
-            irradiance = harmonics_irradiance(around, weights, weights, weights);
-        }  //+cdrf
+        var sigma = vec3f(0.0f);
+        if (EFFECT_CDRF) {
+            sigma = cdrf_sigmas(surface.curvature);
+        }
+        if (EFFECT_NORMAL_TEXTURE) {  //+normal_texture
+            //+normal_texture {
+            irradiance = vec3f(
+                cdrf_around(harmonics_around(normals.red), sigma).x,
+                cdrf_around(harmonics_around(normals.green), sigma).y,
+                cdrf_around(harmonics_around(normals.blue), sigma).z,
+            );
+            //+normal_texture }
+        } else {  //+normal_texture
+            irradiance = cdrf_around(around, sigma);
+        }  //+normal_texture
         if (EFFECT_HALF_SPACE) {
             irradiance *= scattering_law_around(dot(normal, toward_eye), material.law);
         }
@@ -328,13 +409,13 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f, toward_
 }
 
 // Radiance that the surface reflects from all lights towards the eye, without spreading it.
-fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
+fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
-        var highlight = reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
+        var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.alpha);
         if (EFFECT_SHADOW) {
-            highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);
+            highlight *= cdrf_visible(index, dot(normals.coarse, arrival.direction), position, normals.coarse);
         }
         if (EFFECT_COLORED_SHADOW) {
             highlight *= stone_shadow_of_light(index, position);
@@ -348,22 +429,29 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let surface = cdrf_surface(input);
     let toward_eye = normalize(view.eye - input.position);
-    let normal = cdrf_unit_normal(input.normal, toward_eye);
+    let normals = cdrf_normals(input, surface, cdrf_unit_normal(input.normal, toward_eye));
 
     var received = vec3f(0.0f);
     if (EFFECT_TEXTURE_DIFFUSION) {  //+texture_diffusion
         received = textureSampleLevel(diffused, diffused_sampler, input.uv, 0.0f).rgb;  //+texture_diffusion
     } else {  //+texture_diffusion
-        received = cdrf_received(input, surface, normal, toward_eye);
+        received = cdrf_received(input, surface, normals, toward_eye);
     }  //+texture_diffusion
-    let inside = 0.31830987f * material.base_color * received;
+    var base_color = material.base_color;
+    if (EFFECT_BASE_COLOR_TEXTURE) {
+        base_color *= textureSampleLevel(base_color_texture, base_color_sampler, input.base_color_uv, 0.0f).rgb;
+    }
+    if (EFFECT_VERTEX_COLOR) {
+        base_color *= input.color;
+    }
+    let inside = 0.31830987f * base_color * received;
     var radiance = inside;
     if (EFFECT_REFLECTION) {
-        radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);
+        radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, material.alpha);
     }
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
-            radiance += cdrf_highlights(input.position, normal, toward_eye);
+            radiance += cdrf_highlights(input.position, normals, toward_eye);
         }
     }
     return vec4f(radiance, 1.0f);

@@ -426,10 +426,12 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
         // A texel spans much of the surface's height where light grazes it; a lit surface counts as flat there.
         let flat = reached * cosines.x / max(cosines.y, 0.02f);
         var flatness = lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y));
-        if (EFFECT_DIELECTRIC || end == 0u) {
-            // The map knows the way of light that is not refracted; and no way leads to where light arrives.
+        if (EFFECT_DIELECTRIC) {
+            // The map knows the way of light that is not refracted.
             flatness = lit;
         }
+        // No way leads to where light arrives.
+        flatness = select(flatness, lit, end == 0u);
         var way = flat;
         if (flatness < 1.0f) {
             let found = diffusion_way(layer, position - reached * body.grid.spacing * toward_eye, toward_light);

@@ -9,7 +9,7 @@ use super::quality::Chosen;
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene};
+use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, TextureSlot};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,6 +150,9 @@ impl Case<'_> {
             Effect::Environment => self.environment(),
             Effect::Dielectric => self.dielectric(),
             Effect::EnvironmentMap => self.environment_map(),
+            Effect::BaseColorTexture => self.image(TextureSlot::BaseColor),
+            Effect::NormalTexture => self.image(TextureSlot::Normal),
+            Effect::VertexColor => self.vertex_color(),
             Effect::Microfacet => self.microfacet(),
             Effect::Reflection => self.reflection(),
             Effect::Spot => self.spot(),
@@ -520,6 +523,40 @@ impl Case<'_> {
             Environment::Map(_) if self.is_gem() => on("the environment is an image"),
             Environment::Map(_) if self.reflection().0 => on("the environment is an image, which the surface reflects"),
             Environment::Map(_) => off("of the image only its diffuse light is needed, which harmonics hold"),
+        }
+    }
+
+    /// Whether the rung draws a material's images and a mesh's colours.
+    fn draws_images(&self) -> Result<(), String> {
+        match self.rung {
+            Rung::Diffuse(_) => Ok(()),
+            _ => Err(format!("the rung {} draws the factor alone", self.rung)),
+        }
+    }
+
+    fn image(&self, slot: TextureSlot) -> Answer {
+        let Some(texture) = self.material.texture(slot) else {
+            return off(format!("no {}", slot.name()));
+        };
+        if !self.material.calls_for(slot) {
+            return off(format!("{} with a factor of 0", slot.name()));
+        }
+        if self.object.mesh.uvs.is_empty() {
+            return off(format!("{}, but the mesh has no texture coordinates", slot.name()));
+        }
+        match self.draws_images() {
+            Ok(()) => on(format!("{} of {} x {} texels", slot.name(), texture.texels.width(), texture.texels.height())),
+            Err(reason) => off(reason),
+        }
+    }
+
+    fn vertex_color(&self) -> Answer {
+        if self.object.mesh.colors.is_empty() {
+            return off("no colours of vertices");
+        }
+        match self.draws_images() {
+            Ok(()) => on("the mesh has colours of vertices"),
+            Err(reason) => off(reason),
         }
     }
 

@@ -85,6 +85,12 @@ effects! {
     Dielectric = "dielectric", "EFFECT_DIELECTRIC";
     /// Environment given as an image.
     EnvironmentMap = "environment_map", "EFFECT_ENVIRONMENT_MAP";
+    /// Diffuse colour that varies over the surface, by an image.
+    BaseColorTexture = "base_color_texture", "EFFECT_BASE_COLOR_TEXTURE";
+    /// Slopes of the surface that are too fine for the mesh, by an image.
+    NormalTexture = "normal_texture", "EFFECT_NORMAL_TEXTURE";
+    /// Diffuse colour that varies from vertex to vertex.
+    VertexColor = "vertex_color", "EFFECT_VERTEX_COLOR";
     /// Highlights of the lights on a rough surface.
     Microfacet = "microfacet", "EFFECT_MICROFACET";
     /// Reflection of the environment in a polished surface.

@@ -81,6 +81,15 @@ pub enum Note {
         /// The rung that needs a normal per position.
         rung: Rung,
     },
+    /// Bodies whose images and colours of vertices the rung does not draw: their factors alone are seen.
+    FactorsAlone {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+        /// What is not drawn.
+        what: Vec<&'static str>,
+    },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
         /// The objects concerned.
@@ -177,6 +186,11 @@ impl fmt::Display for Note {
                 f,
                 "{objects}: the mesh has a normal for each face, where rung `{rung}` needs one for each position; they were averaged by angle"
             ),
+            Self::FactorsAlone { objects, rung, what } => write!(
+                f,
+                "{objects}: rung `{rung}` does not draw {}, so that the factor alone is seen",
+                what.join(" and ")
+            ),
             Self::NotClear { objects, asked, instead } => write!(
                 f,
                 "{objects}: rung `{asked}` is for clear stones, and the material lets nothing through, so drawn by `{instead}`"
@@ -225,6 +239,10 @@ mod tests {
             of(Note::Black { objects: objects(1), share: 3e-5, thickness: 0.25 }, "3e-5 is left after 0.250"),
             of(Note::ClipsToWhite { objects: objects(1), radiance: 50.0 }, "about 1e-2"),
             of(Note::HardEdges { objects: objects(1), rung }, "averaged by angle"),
+            of(
+                Note::FactorsAlone { objects: objects(1), rung, what: vec!["baseColorTexture", "normalTexture"] },
+                "does not draw baseColorTexture and normalTexture",
+            ),
             of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
             of(Note::NothingInView, "--from"),
             of(

@@ -5,7 +5,7 @@ use crate::{Geometry, Note, Objects, Request, Rung};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, clip_from_world};
+use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world};
 use std::f64::consts::PI;
 
 /// Maximum triangle count of a mesh that is diagnosed. Larger ones would take seconds, and as much
@@ -50,6 +50,11 @@ fn add(notes: &mut Vec<Note>, note: Note) {
         | (Note::ClipsToWhite { objects, .. }, Note::ClipsToWhite { .. }) => Some(objects),
         (Note::ThinWall { objects, unused }, Note::ThinWall { unused: other, .. }) if unused == other => Some(objects),
         (Note::HardEdges { objects, rung }, Note::HardEdges { rung: other, .. }) if rung == other => Some(objects),
+        (Note::FactorsAlone { objects, rung, what }, Note::FactorsAlone { rung: other, what: others, .. })
+            if rung == other && what == others =>
+        {
+            Some(objects)
+        }
         (Note::NotClear { objects, instead, .. }, Note::NotClear { instead: other, .. }) if instead == other => {
             Some(objects)
         }
@@ -77,6 +82,10 @@ impl Case<'_> {
         if self.request.rung.is_for_clear_stones() && !self.object.material.is_clear() {
             notes.push(Note::NotClear { objects: objects.clone(), asked: self.request.rung, instead: rung });
         }
+        let what = self.factors_alone();
+        if !what.is_empty() {
+            notes.push(Note::FactorsAlone { objects: objects.clone(), rung, what });
+        }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
             notes.push(Note::HardEdges { objects: objects.clone(), rung });
@@ -85,6 +94,18 @@ impl Case<'_> {
         notes.extend(self.black(&objects));
         notes.extend(self.white(&objects, around));
         notes
+    }
+
+    /// Returns the images, and the colours of vertices, that the rung leaves out.
+    fn factors_alone(&self) -> Vec<&'static str> {
+        let Object { mesh, material, .. } = self.object;
+        // The reference of scattering bodies has the base colour's image.
+        if matches!(self.rung, Rung::Diffuse(_)) {
+            return Vec::new();
+        }
+        let slots = [TextureSlot::BaseColor, TextureSlot::Normal].into_iter();
+        let lost = slots.filter(|slot| material.texture(*slot).is_some() && material.calls_for(*slot));
+        lost.map(TextureSlot::name).chain((!mesh.colors.is_empty()).then_some("COLOR_0")).collect()
     }
 
     /// Returns what is wrong with the object's mesh for its rung; `None` if nothing is.

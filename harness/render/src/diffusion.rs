@@ -26,8 +26,8 @@ use lapidary_plan::{Effect, Note};
 use lapidary_scene::{Bounds, Density, Material, Object};
 use levels::Levels;
 use source::Source;
-use tiles::Tiles;
 use std::ops::Range;
+use tiles::Tiles;
 
 /// Extinction per voxel spacing that thinner matter counts as: without any, light does not diffuse.
 const THINNEST: f32 = 1e-4;

@@ -53,6 +53,7 @@ pub mod solver;
 mod stage;
 mod stone;
 pub mod texture_diffusion;
+mod textures;
 mod timer;
 mod translucent;
 mod variant;

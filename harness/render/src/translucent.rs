@@ -9,7 +9,7 @@ use super::reflectance::{form, spread};
 use super::scattering_law::ScatteringLaw;
 use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
-use super::{RenderError, Settings};
+use super::{RenderError, Settings, textures};
 use crate::cdrf::table;
 use crate::frame::{Bound, Buffer, Builder, Contents, PipelineId, PipelineSource, Texture};
 use crate::record::Record;
@@ -110,12 +110,13 @@ fn add(
 ) -> Result<(Body, Option<Blur>), RenderError> {
     let Object { mesh, material, .. } = object;
     let curvatures = if builder.binds(pipeline, 1, 7) { vertex_curvatures(mesh) } else { Vec::new() };
-    let parts: [(u32, &str, &[u8]); 5] = [
+    let parts: [(u32, &str, &[u8]); 6] = [
         (1, "positions", bytemuck::cast_slice(&mesh.positions)),
         (2, "indices", bytemuck::cast_slice(&mesh.indices)),
         (3, "normals", bytemuck::cast_slice(&mesh.normals)),
         (7, "curvatures", bytemuck::cast_slice(&curvatures)),
         (8, "uvs", bytemuck::cast_slice(&mesh.uvs)),
+        (15, "colors", bytemuck::cast_slice(&mesh.colors)),
     ];
     // The irradiance is drawn with these, whether or not shading still reads them.
     let blurs = builder.binds(pipeline, 1, 9);
@@ -138,6 +139,7 @@ fn add(
     let mut resources: Vec<(u32, Bound)> =
         buffers.iter().map(|(binding, buffer)| (*binding, (*buffer).into())).collect();
     resources.push((0, record.into()));
+    resources.extend(textures::bound(builder, pipeline, material, mesh));
     if let Reflectance::Table(side, format) = reflectance {
         let binding = if format == Format::R32Float { 6 } else { 4 };
         if builder.binds(pipeline, 1, binding) {
@@ -171,7 +173,10 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
     let record = record.with("alpha", material.roughness * material.roughness);
     let record = record.with("free_path", safe(thickness::free_path(material)));
-    record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record))
+    let record = record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record));
+    let record =
+        record.within("base_color_place", |record| textures::place(record, material.base_color_texture.as_ref()));
+    record.within("normal_place", |record| textures::place(record, material.normal_texture.as_ref()))
 }
 
 /// Returns the material's widths, made safe.

@@ -26,7 +26,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 31] = [
+pub const BUILT_IN: [BuiltIn; 33] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -149,6 +149,16 @@ pub const BUILT_IN: [BuiltIn; 31] = [
         description: "The Stanford bunny, 60 mm high, of polished green jade, in one light.",
     },
     BuiltIn {
+        name: "skin_head",
+        description: "Skin, the same everywhere, on a head: that of the scene `head` without its images, to compare with random walks, which \
+            know the matter alone.",
+    },
+    BuiltIn {
+        name: "head",
+        description: "The head of Lee Perry-Smith, a scan that papers on skin show, 380 mm from crown to chest: its colour and its slopes \
+            are images, under a warm light from the side and a cool one from behind.",
+    },
+    BuiltIn {
         name: "bunny",
         description: "The Stanford bunny of marble, 60 mm high, with parallel light from the left: through the ears it passes, the body \
             stops it.",
@@ -225,6 +235,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "skin" | "wax" | "jade" => Ok(translucent::spheres(name)),
         "skin_ring" | "wax_ring" | "jade_ring" => Ok(translucent::ring(name)),
         "skin_bunny" | "wax_bunny" | "jade_bunny" => translucent::bunny(name),
+        "head" | "skin_head" => translucent::head(name),
         "bunny" => stone::bunny(name),
         "dragon" => stone::dragon(name),
         "figure" => stone::figure(name),

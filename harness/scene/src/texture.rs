@@ -148,8 +148,9 @@ impl Wrap {
         (texels.map(|texel| self.texel(texel, i64::from(side))), place - first)
     }
 
-    /// Returns the texel of the image that stands at `texel` of the plane.
-    fn texel(self, texel: i64, side: i64) -> u32 {
+    /// Returns the texel of an image with this many on a side, at least one, that stands at `texel` of the plane.
+    #[must_use]
+    pub fn texel(self, texel: i64, side: i64) -> u32 {
         let inside = match self {
             Self::Repeat => texel.rem_euclid(side),
             Self::MirroredRepeat => {

@@ -3,8 +3,8 @@
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
 use lapidary_cook::cost::{
-    CostError, Ladder, Options, Progress, Report, cdrf, dynamic, effects, optical_path, outside, page, restraint, sphere,
-    translucent,
+    CostError, Ladder, Options, Progress, Report, cdrf, dynamic, effects, optical_path, outside, page, restraint,
+    sphere, translucent,
 };
 use lapidary_cook::text_file;
 use lapidary_gpu::Gpu;

@@ -164,7 +164,8 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
             let name = format!("{rung}, {}", sequence.start.name());
             let diffuses = matches!(rung, Rung::Diffusion(_));
             let ms = (options.rounds > 0).then(|| sequence.ms());
-            let row = |measure: &str, value: f64| Row::new(&name, motion.name(), measure, diffuses.then_some(value), "");
+            let row =
+                |measure: &str, value: f64| Row::new(&name, motion.name(), measure, diffuses.then_some(value), "");
             report.rows.push(row("residual", sequence.residual).timed(ms));
             report.rows.push(row("cycles", sequence.cycles_run().into()));
         }
@@ -190,8 +191,8 @@ fn whole(report: &Report) -> Result<(), String> {
 }
 
 fn table(report: &Report) -> Table {
-    let mut lines = Table::of("dynamic", "A frame in motion", report.rungs("residual"))
-        .column("frame", |rung| (*rung).to_owned());
+    let mut lines =
+        Table::of("dynamic", "A frame in motion", report.rungs("residual")).column("frame", |rung| (*rung).to_owned());
     for motion in Motion::ALL.map(Motion::name) {
         lines = lines.column(motion, |rung| {
             let ms = figure(report.ms(rung, motion, "residual"), 1);
@@ -217,7 +218,8 @@ fn goals(report: &Report) -> Table {
     let ms = |start: Start| report.ms(&format!("{DIFFUSION}, {}", start.name()), Motion::Light.name(), "residual");
     let mut goals = Vec::new();
     if let [Some(cold), Some(warm)] = Start::ALL.map(ms) {
-        let goal = format!("the light's orbit, `{DIFFUSION}` at a residual of {RESIDUAL}: a warm frame takes at most half");
+        let goal =
+            format!("the light's orbit, `{DIFFUSION}` at a residual of {RESIDUAL}: a warm frame takes at most half");
         goals.push(Goal::new(goal, format!("{:.2}: {warm:.1} of {cold:.1} ms", warm / cold), warm <= 0.5 * cold));
     }
     Goal::table("dynamic_goals", goals)

@@ -4,6 +4,7 @@
 use super::table::{Table, figure};
 use super::timing::{self, Timed};
 use super::{CostError, Ladder, Options, Progress, Report, Row};
+use glam::Vec3;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};
 use lapidary_render::plan::Plan;
@@ -89,6 +90,10 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     let mut thin = one("ruby")?;
     for object in &mut thin.objects {
         object.material.thickness = 0.0;
+    }
+    let mut coloured = one("head")?;
+    for object in &mut coloured.objects {
+        object.mesh.colors = vec![Vec3::ONE; object.mesh.positions.len()];
     }
     let mut veined = spotlit("dragon")?;
     for object in &mut veined.objects {
@@ -183,6 +188,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             scene: one("wax_bunny")?,
             settings: settings("lambert-shadowed"),
             effects: &[Effect::Shadow, Effect::Environment, Effect::Microfacet],
+            stands_on: &[],
+        },
+        Case {
+            name: "head",
+            scene: coloured,
+            settings: settings("accurate"),
+            effects: &[Effect::Cdrf, Effect::BaseColorTexture, Effect::NormalTexture, Effect::VertexColor],
             stands_on: &[],
         },
         Case {

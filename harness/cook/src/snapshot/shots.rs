@@ -30,6 +30,8 @@ pub struct Shot {
     pub lights_alone: bool,
     /// Whether their surface also reflects nothing, as in the reference.
     pub matte: bool,
+    /// Whether scattering bodies follow the law of a half space and stand in shadows under a named rung too.
+    pub with_law: bool,
     /// Factor of radiance before the tone curve.
     pub exposure: f32,
     /// The curvature that spreads the light.
@@ -47,7 +49,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 51] = [
+pub const SHOTS: [Shot; 54] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -182,6 +184,22 @@ pub const SHOTS: [Shot; 51] = [
             as this.",
         ..by_lights("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
     },
+    Shot {
+        with_law: true,
+        curvature: Curvature::Vertex,
+        paragraph: "Skin by the reflectance of curved surfaces: the drift and width of random walks, the law of a half space, shadows, and the \
+            scan's colour and slopes, of which each colour keeps what its light does not even out. The red of the terminator comes of \
+            the curvature alone.",
+        ..face("head", "Skin: a head by curvature", "drift")
+    },
+    Shot {
+        paragraph: "The same by Lambert's law with shadows: what one would use without any of it. The terminator is grey, and hard.",
+        ..face("head_lambert", "Skin: a head by Lambert's law with shadows", "lambert-shadowed")
+    },
+    Shot {
+        paragraph: "The same by a blur of the irradiance in the scan's own texture, which knows no shadows here.",
+        ..face("head_blur", "Skin: a head by texture diffusion", "blur")
+    },
     stone("bunny", "Marble: the bunny, light from the left"),
     stone("dragon", "Veined jade: the dragon, light from behind"),
     stone("figure", "Marble: a winged figure, light from behind"),
@@ -207,6 +225,7 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         outside: None,
         lights_alone: false,
         matte: false,
+        with_law: false,
         exposure: 1.0,
         curvature: Curvature::Mean,
         samples: SAMPLES,
@@ -229,6 +248,11 @@ const fn bright(name: &'static str, title: &'static str, scene: &'static str, ru
 /// references by random walks account for.
 const fn by_lights(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
     Shot { lights_alone: true, matte: true, exposure: LIGHTS_ALONE, ..shot(name, title, scene, rung) }
+}
+
+/// Returns a shot of the head, lit by its lights alone.
+const fn face(name: &'static str, title: &'static str, rung: &'static str) -> Shot {
+    Shot { lights_alone: true, ..shot(name, title, "head", rung) }
 }
 
 /// Returns a shot of light through the body, along optical paths.
@@ -267,6 +291,8 @@ impl Shot {
                 ..GemOptions::default()
             },
             without: self.without(),
+            half_space: self.with_law,
+            shadows: self.with_law,
             exposure: self.exposure,
             diffuse: DiffuseOptions { curvature: self.curvature, ..DiffuseOptions::default() },
             samples: self.samples,
@@ -313,6 +339,7 @@ impl Shot {
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
         let left_out = self.left_out();
         let light = if left_out.is_empty() { String::new() } else { format!(" --without {}", left_out.join(",")) };
+        let law = if self.with_law { " --with half_space,shadow" } else { "" };
         let curvature = match self.curvature {
             Curvature::Mean => String::new(),
             other => format!(" --curvature {}", other.name()),
@@ -320,7 +347,7 @@ impl Shot {
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
         let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
-        let choices = format!("{from}{rung}{centre}{footprint}{outside}{light}{curvature}{exposure}{samples}");
+        let choices = format!("{from}{rung}{centre}{footprint}{outside}{law}{light}{curvature}{exposure}{samples}");
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

@@ -5,11 +5,13 @@ use crate::pixels::rays;
 use glam::{DQuat, DVec3, Vec3};
 use lapidary_cook::cost::translucent;
 use lapidary_cook::exposure::{distance, exposed_distance};
+use lapidary_cook::motion::Motion;
 use lapidary_cook::snapshot::frames::halved;
 use lapidary_cook::snapshot::{EXR_SIDE, WalkedReference};
 use lapidary_plan::{Effect, Effects};
+use lapidary_reference::random_walk::mesh::Origin;
 use lapidary_render as render;
-use lapidary_render::{DiffusionOptions, Picture, Settings};
+use lapidary_render::{DiffusionOptions, Picture, Settings, WalkOptions};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{rounded_box, sphere};
 use lapidary_scene::{Camera, Environment, Light, Material, Medium, Mesh, Object, Scene};
@@ -36,6 +38,47 @@ fn scene_of(mesh: Mesh, medium: Medium, lights: Vec<Light>, (polar, azimuth): (f
 
 fn sun(toward: Vec3, irradiance: Vec3) -> Light {
     Light::Directional { toward: toward.normalize(), irradiance }
+}
+
+/// Two scenes and a light that no constant was chosen by: they were compared once, when all was done.
+#[test]
+#[ignore = "walks for minutes"]
+fn two_scenes_and_a_light_that_were_looked_at_once() {
+    let side = 128;
+    let drops = Motion::Topology.scene(0.6).expect("built in");
+    let lit = Scene {
+        lights: vec![sun(Vec3::new(0.6, 0.5, 0.6), Vec3::splat(4.0))],
+        ..Scene::named("dragon").expect("built in")
+    };
+    for (name, scene) in [
+        ("jade_ring", Scene::named("jade_ring").expect("built in")),
+        ("drops", drops),
+        ("dragon, light from the front", lit),
+    ] {
+        let walks = WalkOptions { walks: 2048, from: Origin::Lights, ..WalkOptions::default() };
+        let settings = Settings {
+            rung: "reference".parse().expect("a rung"),
+            without: Effects::of(&[Effect::Environment]),
+            walks,
+            ..Settings::of_size(side, side)
+        };
+        let truth = render::render(super::gpu(), &scene, &settings).expect("walked").linear;
+        let distances = |rung: &str| {
+            let picture = halved(&drawn(&scene, rung, 2 * side)).linear;
+            [exposed_distance(&picture, &truth), distance(&picture, &truth)]
+        };
+        let lambert = distances("lambert-shadowed");
+        for (rung, most) in translucent::SHARES {
+            let found = distances(rung);
+            let [best, one] = [0, 1].map(|place| found[place] / lambert[place]);
+            println!(
+                "{name}, {rung}: {best:.2} and {one:.2} of Lambert's distance of {:.3} and {:.3}",
+                lambert[0], lambert[1]
+            );
+            // Goals are missed here by up to .03, which docs/diffusion.md says.
+            assert!(best.max(one) < most + 0.1, "{name}, {rung}: {best} {one}");
+        }
+    }
 }
 
 /// The goals of docs/diffusion.md: the share of the distance of Lambert's law with shadows, at the

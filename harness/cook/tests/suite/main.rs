@@ -52,6 +52,7 @@ mod surroundings;
 mod technique;
 mod text;
 mod texture_diffusion;
+mod textures;
 mod user_file;
 mod vitrine;
 mod voxelization;

@@ -207,6 +207,8 @@ fn cases() -> Vec<Case> {
         outer_angle: 0.5,
     };
     let spotlit = Scene { lights: vec![spot], ..one("wax") };
+    let mut coloured = one("wax");
+    coloured.objects[0].mesh.colors = vec![Vec3::ONE; coloured.objects[0].mesh.positions.len()];
     let mut thin = one("brilliant");
     thin.objects[0].material.thickness = 0.0;
     let mut copied = one("octahedron");
@@ -338,6 +340,19 @@ fn cases() -> Vec<Case> {
             Settings { environment: sky(), ..settings() },
             [vec!["environment map"], vec![], vec![]],
         ),
+        case(
+            Effect::BaseColorTexture,
+            one("head"),
+            of_rung("accurate"),
+            [vec!["base colour image", "base colour image's sampler"], vec![], vec![]],
+        ),
+        case(
+            Effect::NormalTexture,
+            one("head"),
+            of_rung("accurate"),
+            [vec!["normals by image", "normal image's sampler"], vec![], vec![]],
+        ),
+        case(Effect::VertexColor, coloured, of_rung("accurate"), [vec!["colors"], vec![], vec![]]),
         case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),
         case(
             Effect::Reflection,

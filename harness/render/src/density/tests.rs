@@ -116,5 +116,9 @@ fn a_listed_tile_has_its_densities_and_no_other() {
 fn a_body_of_one_density_needs_none() {
     let mut builder = Builder::new(None);
     let matter = builder.storage("matter", &[0; 4]);
-    assert!(Densities::new(&mut builder, grid(16), &Density::Uniform, Where::Near(matter)).expect("nothing to compile").is_none());
+    assert!(
+        Densities::new(&mut builder, grid(16), &Density::Uniform, Where::Near(matter))
+            .expect("nothing to compile")
+            .is_none()
+    );
 }

@@ -115,7 +115,8 @@ impl Cells {
             let group = builder.bind(kernel, 0, &resources);
             builder.dispatch(kernel, vec![group], workgroups)
         };
-        let dispatches = kernels.into_iter().zip(counts.into_iter().chain([tiles.dispatched()])).map(dispatch).collect();
+        let dispatches =
+            kernels.into_iter().zip(counts.into_iter().chain([tiles.dispatched()])).map(dispatch).collect();
         let cleared = [filled, surfaces, nodes, faces, reactions].into_iter().chain(entering).collect();
         let own = [filled, surfaces, large].into_iter().chain(tiles.buffers()).chain(entering).collect();
         Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, entering, tiles, large, cleared, own, dispatches })

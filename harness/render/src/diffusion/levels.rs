@@ -201,8 +201,7 @@ fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells)
     use wgpu::BufferUsages as Usage;
     let side = sides[number];
     let voxels = u64::from(side).pow(3);
-    let record =
-        |color: u32| Record::new("DiffusionLevel").with("cells", side).with("color", color);
+    let record = |color: u32| Record::new("DiffusionLevel").with("cells", side).with("color", color);
     let records = [0, 1].map(|color| builder.uniform("level", record(color)));
     let mut storage = |what: &str, bytes: u64| {
         builder.buffer(&format!("{what} of level {number}"), bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)
@@ -212,7 +211,8 @@ fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells)
     let (faces, reactions, tiles) = if number == 0 {
         (cells.faces, cells.reactions, cells.tiles)
     } else {
-        let [faces, reactions] = [("conductances", 12), ("losses", 16)].map(|(what, bytes)| storage(what, bytes * voxels));
+        let [faces, reactions] =
+            [("conductances", 12), ("losses", 16)].map(|(what, bytes)| storage(what, bytes * voxels));
         (faces, reactions, Tiles::new(builder, side, number))
     };
     Level { cells: side, tiles, faces, reactions, fluence, right, records }
@@ -226,8 +226,15 @@ impl Level {
         color: usize,
         others: &[(u32, Bound)],
     ) -> Vec<Option<crate::frame::BindGroupId>> {
-        let own =
-            [self.records[color], self.tiles.list, self.tiles.workgroups, self.faces, self.reactions, self.fluence, self.right];
+        let own = [
+            self.records[color],
+            self.tiles.list,
+            self.tiles.workgroups,
+            self.faces,
+            self.reactions,
+            self.fluence,
+            self.right,
+        ];
         let own: Vec<(u32, Bound)> = (0..).zip(own.map(Bound::from)).collect();
         vec![builder.bind(kernel, 0, &own), builder.bind(kernel, 1, others)]
     }

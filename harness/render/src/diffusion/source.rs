@@ -2,8 +2,8 @@
 
 use super::super::light_maps::Lit;
 use super::Matter;
-use super::tiles::Tiles;
 use super::cells::unit;
+use super::tiles::Tiles;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;

@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 
 use super::{direction, framed};
 use crate::surfaces::{sphere, torus};
-use crate::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use crate::{Bounds, Camera, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 
 /// Skin: skin1 of Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light
 /// Transport" (2001).
@@ -100,6 +100,44 @@ pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     });
     let objects = meshes.map(|mesh| object("bunny", mesh, name)).collect();
     Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
+}
+
+/// Lee Perry-Smith's head, with its colour and its slopes as images.
+const HEAD: &[u8] = include_bytes!("../../../assets/head.glb");
+/// Height of the bust in millimetres.
+const HEAD_HEIGHT: f32 = 380.0;
+
+/// Builds the head, lit from the side, so that the terminator runs over the face, with a weaker cool light from
+/// behind: as `head` with its images, as `skin_head` of skin that is the same everywhere.
+pub(super) fn head(name: &str) -> Result<Scene, SceneError> {
+    let parsed = gltf::parse(HEAD, None)?;
+    let objects = parsed.objects.into_iter().map(|found| {
+        let of_file = found.material;
+        let material = match name {
+            // The image holds the diffuse reflectance.
+            "head" => Material {
+                base_color: of_file.base_color,
+                base_color_texture: of_file.base_color_texture,
+                normal_texture: of_file.normal_texture,
+                normal_scale: of_file.normal_scale,
+                ..material("skin")
+            },
+            _ => material("skin"),
+        };
+        Object::new("head", sized(found.mesh, HEAD_HEIGHT), material)
+    });
+    let rim = Light::Directional {
+        toward: Vec3::new(-0.7, 0.35, -0.6).normalize(),
+        irradiance: 0.5 * PI * Vec3::new(0.7, 0.85, 1.0),
+    };
+    let key = Light::Directional {
+        toward: Vec3::new(0.85, 0.45, 0.35).normalize(),
+        irradiance: 1.2 * PI * Vec3::new(1.0, 0.95, 0.88),
+    };
+    // The face, and not the whole bust.
+    let middle = Vec3::new(0.0, 70.0, 10.0);
+    let camera = Camera::upright(middle + 1000.0 * direction(86.0, 22.0), middle, 0.28);
+    Ok(Scene { lights: vec![key, rim], camera, ..framed(name, objects.collect(), direction(86.0, 22.0)) })
 }
 
 /// Returns a directional light under which a white surface facing it has radiance 0.6.

@@ -4,7 +4,5 @@
 use crate::TextureSlot;
 
 /// Textures that are loaded and not drawn: their factor is drawn alone.
-pub(super) const TEXTURES: &[TextureSlot] = &TextureSlot::ALL;
-
-/// Whether colours of vertices are loaded and not drawn.
-pub(super) const VERTEX_COLORS: bool = true;
+pub(super) const TEXTURES: &[TextureSlot] =
+    &[TextureSlot::Thickness, TextureSlot::Transmission, TextureSlot::DiffuseTransmission];

@@ -99,9 +99,6 @@ fn primitive(root: &Root, primitive: &Primitive, mesh: User<'_>, lacking: &mut L
     let has = |wanted: &dyn Fn(&Semantic) -> bool| {
         primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(semantic) if wanted(semantic)))
     };
-    if not_drawn::VERTEX_COLORS && has(&|semantic| *semantic == Semantic::Colors(0)) {
-        lacking.note(COLORS, "`COLOR_0`".to_owned(), "the material's colour is drawn alone", mesh);
-    }
     if has(&|semantic| matches!(semantic, Semantic::Colors(1..))) {
         lacking.note(COLORS, "`COLOR_n` after the first".to_owned(), "the first is drawn alone", mesh);
     }

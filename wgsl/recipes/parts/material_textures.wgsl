@@ -1,0 +1,60 @@
+// material_textures: what the images of a material hold at a point: its colour, and the slopes of its surface.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
+//   2, 2011, for normals blurred per colour; Mikkelsen, "Surface Gradient-Based Bump Mapping Framework",
+//   JCGT 9 (2020), for tangents from derivatives.
+//
+// A recipe adds: nothing.
+
+// The diffuse colour varies over the surface. Called for by a material's baseColorTexture.
+override EFFECT_BASE_COLOR_TEXTURE: bool = false;
+// The surface has slopes too fine for the mesh. Called for by a material's normalTexture.
+override EFFECT_NORMAL_TEXTURE: bool = false;
+// The diffuse colour varies from vertex to vertex. Called for by a mesh's COLOR_0.
+override EFFECT_VERTEX_COLOR: bool = false;
+
+// A map of texture coordinates, a row of the matrix for u and one for v: KHR_texture_transform.
+struct TexturePlace {
+    u: vec3f,
+    v: vec3f,
+}
+
+// Linear RGB.
+@group(1) @binding(11) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(12) var base_color_sampler: sampler;
+// Normals' x along u and y against v, four layers: as the image has them, and blurred over the surface as far as
+// red, green and blue light spread in the material.
+@group(1) @binding(13) var normal_texture: texture_2d_array<f32>;
+@group(1) @binding(14) var normal_sampler: sampler;
+// Three floats per vertex, linear RGB.
+@group(1) @binding(15) var<storage, read> colors: array<f32>;
+
+fn texture_place(place: TexturePlace, uv: vec2f) -> vec2f {
+    return vec2f(dot(place.u, vec3f(uv, 1.0f)), dot(place.v, vec3f(uv, 1.0f)));
+}
+
+// Unit vectors along which u and v grow over the surface; 0 where the coordinates do not change.
+struct TextureTangents {
+    u: vec3f,
+    v: vec3f,
+}
+
+// From the derivatives of position and coordinates along the screen, and the unit normal.
+fn texture_tangents(normal: vec3f, position_x: vec3f, position_y: vec3f, uv_x: vec2f, uv_y: vec2f) -> TextureTangents {
+    let across_x = cross(position_y, normal);
+    let across_y = cross(normal, position_x);
+    // Which way the screen's axes turn about the normal depends on where y points.
+    let turn = sign(dot(position_x, across_x));
+    let u = turn * (across_x * uv_x.x + across_y * uv_y.x);
+    let v = turn * (across_x * uv_x.y + across_y * uv_y.y);
+    // A tiny length would be rounding, and squares of smaller ones underflow.
+    let scale = inverseSqrt(max(max(dot(u, u), dot(v, v)), 1e-30f));
+    return TextureTangents(u * scale, v * scale);
+}
+
+// The unit normal of a layer of the texture, at coordinates of its image.
+fn texture_normal(layer: u32, uv: vec2f, normal: vec3f, tangents: TextureTangents) -> vec3f {
+    let slopes = textureSampleLevel(normal_texture, normal_sampler, uv, layer, 0.0f).xy;
+    let up = sqrt(max(1.0f - dot(slopes, slopes), 0.0f));
+    return normalize(slopes.x * tangents.u - slopes.y * tangents.v + max(up, 1e-3f) * normal);
+}
