@@ -369,7 +369,8 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         }
         //+half_space }
         if (EFFECT_SHADOW) {
-            reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, cosine, input.position, normal));
+            let most = max(cosine, max(cosines.x, max(cosines.y, cosines.z)));
+            reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, most, input.position, normal));
         }
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
@@ -415,7 +416,7 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
         let arrival = light_arrival(lights[index], position);
         var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.alpha);
         if (EFFECT_SHADOW) {
-            highlight *= cdrf_visible(index, dot(normals.coarse, arrival.direction), position, normals.coarse);
+            highlight *= cdrf_visible(index, dot(normals.sharp, arrival.direction), position, normals.coarse);
         }
         if (EFFECT_COLORED_SHADOW) {
             highlight *= stone_shadow_of_light(index, position);

@@ -3,16 +3,16 @@
 // Source: own; cut cells as in Johansen and Colella, "A Cartesian Grid Embedded Boundary Method for
 //   Poisson's Equation on Irregular Domains", J. Comput. Phys. 147 (1998), with two-point fluxes.
 // requires: cdrf, diffusion, environment, voxelization
-// parts: mesh, harmonics, diffusion_nodes
+// parts: mesh, harmonics, diffusion_nodes, tiles
 //
-// Clear `filled`, `surfaces`, `entering`, `nodes`, `faces` and `reactions`; what holds no matter stays so.
+// Clear `filled`, `surfaces`, `entering`, `nodes`, `faces`, `reactions` and the count of `large`; what holds no
+// matter stays so.
 // After the recipe voxelization has filled a grid of twice the cells along each edge:
 // 1. `diffusion_cells_fill`, one workgroup of 64 per row of words: (words, cells, cells) / 64.
-// 2. `diffusion_cells_list`, one invocation per tile of 4 x 4 x 4 voxels; `workgroups` begins as (0, 1, 1). All
-//    that follows is dispatched indirectly, by these counts, except:
+// 2. `diffusion_cells_list`, one invocation per tile of 4 x 4 x 4 voxels; `workgroups` begins as (0, 1, 1).
 // 3. `diffusion_cells_surface`, one invocation per triangle; `diffusion_cells_large`, any number of
 //    workgroups.
-// 4. `diffusion_cells_finish`.
+// 4. `diffusion_cells_finish`, one workgroup per listed tile, dispatched indirectly by `workgroups`.
 
 // The density varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -115,18 +115,13 @@ fn diffusion_cells_fill(@builtin(global_invocation_id) invocation: vec3u) {
     }
 }
 
-fn diffusion_tile_corner(tile: u32) -> vec3u {
-    let side = (cells.grid.cells + 3u) / 4u;
-    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
-}
-
 @compute @workgroup_size(DIFFUSION_GROUP)
 fn diffusion_cells_list(@builtin(global_invocation_id) invocation: vec3u) {
     let side = (cells.grid.cells + 3u) / 4u;
     if (invocation.x >= side * side * side) {
         return;
     }
-    let corner = diffusion_tile_corner(invocation.x);
+    let corner = tile_corner(invocation.x, cells.grid.cells);
     let end = min(corner + 4u, vec3u(cells.grid.cells));
     for (var z = corner.z; z < end.z; z++) {
         for (var y = corner.y; y < end.y; y++) {
@@ -314,7 +309,7 @@ fn diffusion_node_depth(voxel: vec3u, parts: u32) -> f32 {
 @compute @workgroup_size(DIFFUSION_GROUP)
 fn diffusion_cells_finish(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let count = cells.grid.cells;
-    let voxel = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let voxel = tile_corner(tiles[group.x], count) + tile_cell(lane);
     if (any(voxel >= vec3u(count))) {
         return;
     }

@@ -4,7 +4,7 @@
 //   Scattering as a Diffusion Process", 1995, for light; Braess, "Towards Algebraic Multigrid for
 //   Elliptic Problems of Second Order", Computing 55 (1995), for the factor of coarse faces.
 // requires: diffusion
-// parts: diffusion_nodes, diffusion_packed
+// parts: diffusion_nodes, diffusion_packed, tiles
 //
 // Levels are numbered from the finest. Each has its own buffers, and half the cells along each edge,
 // rounded up. The coarsest has at most four along each edge, a single tile.
@@ -16,9 +16,10 @@
 // 2. Cycles: on each level from the finest, `diffusion_solve_sweep` twice for each colour, then
 //    `diffusion_solve_restrict` to the next level; on the coarsest `diffusion_solve_coarsest`, one workgroup;
 //    back up, `diffusion_solve_prolong` to the next finer level, and sweeps in the colours' reverse order.
-//    From no light at all, a first cycle sweeps on the way up alone, and not on the finest level.
+//    From no light at all, with the finest `fluence` cleared, a first cycle sweeps on the way up alone, and not on
+//    the finest level.
 // 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
-// 4. `diffusion_solve_pack`, for the recipe that shades.
+// 4. `diffusion_solve_pack`, with `packed` cleared before, for the recipe that shades.
 
 // The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
 // within each coarse cell has slopes twice as steep as one that is linear.
@@ -59,15 +60,10 @@ fn diffusion_index(cell: vec3u, cells: u32) -> u32 {
     return cell.x + cells * (cell.y + cells * cell.z);
 }
 
-fn diffusion_tile_corner(tile: u32) -> vec3u {
-    let side = (level.cells + 3u) / 4u;
-    return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
-}
-
 // Makes the coarser level's equations. A workgroup is a tile, and each of its lanes a coarse cell.
 @compute @workgroup_size(8)
 fn diffusion_solve_coarsen(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let corner = diffusion_tile_corner(tiles[group.x]) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
+    let corner = tile_corner(tiles[group.x], level.cells) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
     if (any(corner >= vec3u(level.cells))) {
         return;
     }
@@ -97,7 +93,7 @@ fn diffusion_solve_list(@builtin(global_invocation_id) invocation: vec3u) {
     if (invocation.x >= side * side * side) {
         return;
     }
-    let corner = diffusion_tile_corner(invocation.x);
+    let corner = tile_corner(invocation.x, level.cells);
     let end = min(corner + 4u, vec3u(level.cells));
     for (var z = corner.z; z < end.z; z++) {
         for (var y = corner.y; y < end.y; y++) {
@@ -167,7 +163,7 @@ fn diffusion_relax_cell(cell: vec3u) {
 
 @compute @workgroup_size(32)
 fn diffusion_solve_sweep(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    diffusion_relax_cell(diffusion_tile_corner(tiles[group.x]) + diffusion_colored(lane, level.color));
+    diffusion_relax_cell(tile_corner(tiles[group.x], level.cells) + diffusion_colored(lane, level.color));
 }
 
 // The residual of a cell's equations.
@@ -196,6 +192,8 @@ fn diffusion_solve_coarsest(@builtin(local_invocation_index) lane: u32) {
         lefts[lane] = left;
         losses[lane] = loss;
         workgroupBarrier();
+        // Nobody changes the fluence before all have read it.
+        storageBarrier();
         left = vec3f(0.0f);
         loss = vec3f(0.0f);
         for (var other = 0u; other < 32u; other++) {
@@ -219,6 +217,8 @@ fn diffusion_solve_coarsest(@builtin(local_invocation_index) lane: u32) {
             diffusion_relax_cell(diffusion_colored(lane, color));
             storageBarrier();
         }
+        // Nor the sums.
+        workgroupBarrier();
     }
 }
 
@@ -226,7 +226,7 @@ fn diffusion_solve_coarsest(@builtin(local_invocation_index) lane: u32) {
 // workgroup is a tile, and each of its lanes a coarse cell.
 @compute @workgroup_size(8)
 fn diffusion_solve_restrict(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let corner = diffusion_tile_corner(tiles[group.x]) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
+    let corner = tile_corner(tiles[group.x], level.cells) + 2u * vec3u(lane & 1u, (lane >> 1u) & 1u, lane >> 2u);
     if (any(corner >= vec3u(level.cells))) {
         return;
     }
@@ -249,7 +249,7 @@ fn diffusion_solve_restrict(@builtin(workgroup_id) group: vec3u, @builtin(local_
 // Adds the coarser level's correction.
 @compute @workgroup_size(64)
 fn diffusion_solve_prolong(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let cell = tile_corner(tiles[group.x], level.cells) + tile_cell(lane);
     if (any(cell >= vec3u(level.cells))) {
         return;
     }
@@ -264,7 +264,7 @@ var<workgroup> squares: array<array<vec3f, 2>, 64>;
 
 @compute @workgroup_size(64)
 fn diffusion_solve_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let cell = tile_corner(tiles[group.x], level.cells) + tile_cell(lane);
     let index = diffusion_index(min(cell, vec3u(level.cells - 1u)), level.cells);
     squares[lane] = array<vec3f, 2>(vec3f(0.0f), vec3f(0.0f));
     if (all(cell < vec3u(level.cells)) && reactions[index].w > 0.0f) {
@@ -287,7 +287,7 @@ fn diffusion_solve_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_
 
 @compute @workgroup_size(64)
 fn diffusion_solve_pack(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let cell = diffusion_tile_corner(tiles[group.x]) + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let cell = tile_corner(tiles[group.x], level.cells) + tile_cell(lane);
     if (any(cell >= vec3u(level.cells))) {
         return;
     }

@@ -3,7 +3,7 @@
 // Source: own; light that is not yet scattered as the source of diffusion as in Ishimaru, "Wave
 //   Propagation and Scattering in Random Media", 1978, chapter 9.
 // requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
-// parts: lights, light_views, diffusion_nodes
+// parts: lights, light_views, diffusion_nodes, tiles
 //
 // Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, then
 // diffusion_source_finish with a workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
@@ -109,6 +109,17 @@ fn diffusion_filled(place: vec3f) -> bool {
     return ((fine[words * (voxel.y + count * voxel.z) + voxel.x / 32u] >> (voxel.x % 32u)) & 1u) != 0u;
 }
 
+// The density about a place; `otherwise` where there is no matter.
+fn diffusion_density(place: vec3f, otherwise: f32) -> f32 {
+    let cells = source.grid.cells;
+    let voxel = vec3u(clamp(place, vec3f(0.0f), vec3f(f32(cells - 1u))));
+    let index = voxel.x + cells * (voxel.y + cells * voxel.z);
+    if (EFFECT_EXTINCTION_PER_VOXEL) {
+        return select(otherwise, density[index], nodes[index] != 0u);
+    }
+    return otherwise;
+}
+
 // A difference of positions along the map, to the nearer of the two texels beside one.
 fn diffusion_beside(texel: vec3u, step: vec2i, position: vec3f) -> vec3f {
     let last = vec2i(i32(textureDimensions(maps).x) - 1i);
@@ -189,10 +200,9 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     var local = 1.0f;
     for (var step = 0u; step < 1024u; step++) {
         if (EFFECT_EXTINCTION_PER_VOXEL) {
-            let voxel = vec3u(clamp(entry - (way + 1e-3f) * back, vec3f(0.0f), vec3f(f32(cells - 1u))));
-            let index = voxel.x + cells * (voxel.y + cells * voxel.z);
-            // Where there is no matter there is no density.
-            local = select(local, density[index], nodes[index] != 0u);
+            // The surface may pass a voxel that holds no matter, and so no density: then that of the next counts.
+            let next = diffusion_density(entry - (way + 0.5f) * back, local);
+            local = diffusion_density(entry - (way + 1e-3f) * back, next);
         }
         // Steps are an optical depth long, in the densest channel of which anything is left.
         let left = select(vec3f(0.0f), source.extinction, gone < vec3f(DIFFUSION_RAY_DEPTH));
@@ -233,14 +243,14 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
 @compute @workgroup_size(64)
 fn diffusion_source_finish(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let cells = source.grid.cells;
-    let side = (cells + 3u) / 4u;
-    let tile = tiles[group.x];
-    let corner = 4u * vec3u(tile % side, tile / side % side, tile / side / side);
-    let place = corner + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let place = tile_corner(tiles[group.x], cells) + tile_cell(lane);
     if (any(place >= vec3u(cells))) {
         return;
     }
     let voxel = place.x + cells * (place.y + cells * place.z);
+    if (nodes[voxel] == 0u) {
+        return;
+    }
     let load = vec3f(vec3u(
         atomicLoad(&loads[3u * voxel]),
         atomicLoad(&loads[3u * voxel + 1u]),

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; the veins are the module veins'.
 // requires: veins, voxelization
-// parts: matter
+// parts: matter, tiles
 //
 // Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds. For
 // diffusion, dispatch optical_path_density_listed between diffusion_cells_list and diffusion_cells_finish, a
@@ -91,10 +91,7 @@ fn optical_path_density(@builtin(local_invocation_index) invocation: u32, @built
 
 @compute @workgroup_size(64)
 fn optical_path_density_listed(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3u) {
-    let side = (grid.cells + 3u) / 4u;
-    let tile = tiles[group.x];
-    let corner = 4u * vec3u(tile % side, tile / side % side, tile / side / side);
-    let voxel = corner + vec3u(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let voxel = tile_corner(tiles[group.x], grid.cells) + tile_cell(lane);
     if (all(voxel < vec3u(grid.cells))) {
         optical_path_fill(voxel);
     }

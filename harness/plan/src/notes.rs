@@ -99,7 +99,7 @@ impl Case<'_> {
     /// Returns the images, and the colours of vertices, that the rung leaves out.
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
-        // The reference of scattering bodies has the base colour's image.
+        // The recipe cdrf_shading draws them.
         if matches!(self.rung, Rung::Diffuse(_)) {
             return Vec::new();
         }

@@ -80,7 +80,7 @@ const RUNGS: [(Technique, [Rung; 3]); 8] = [
     ),
     (
         Technique::Cdrf,
-        [Rung::Diffuse(Reflectance::Wrap), Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Accurate)],
+        [Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Accurate)],
     ),
     (Technique::Translucent, [paths(32, Method::Godunov), Rung::Diffusion(64), Rung::Diffusion(128)]),
     (

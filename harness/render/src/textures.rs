@@ -4,7 +4,6 @@ use crate::frame::{Bound, Builder, Contents, PipelineId};
 use crate::record::Record;
 use exr::prelude::f16;
 use glam::{Vec2, Vec3};
-use lapidary_plan::thickness;
 use lapidary_scene::{Encoding, Material, Mesh, Texels, Texture, TextureTransform, Wrap};
 
 /// Bindings of the part, in group 1.
@@ -24,12 +23,13 @@ pub(crate) fn place(record: Record, texture: Option<&Texture>) -> Record {
     record.with("u", row(0)).with("v", row(1))
 }
 
-/// Adds the images that a pipeline reads of a body's material, and the samplers; returns them by binding.
+/// Adds the images that a pipeline reads of a body's material, and the samplers; returns them by binding. `reach` is how
+/// far each channel's light spreads and evens out slopes, as a standard deviation in units of length.
 pub(crate) fn bound(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
     material: &Material,
-    mesh: &Mesh,
+    (mesh, reach): (&Mesh, Vec3),
 ) -> Vec<(u32, Bound)> {
     let mut bound: Vec<(u32, Bound)> = Vec::new();
     let reads = |builder: &Builder<'_>, bindings: [u32; 2]| builder.binds(pipeline, 1, bindings[0]);
@@ -46,7 +46,6 @@ pub(crate) fn bound(
         bound.extend([(BASE_COLOR[0], image.into()), (BASE_COLOR[1], sampler.into())]);
     }
     if let (Some(texture), true) = (&material.normal_texture, reads(builder, NORMAL)) {
-        let reach = thickness::sigma0(material).unwrap_or_default();
         let layers =
             Normals::of(texture, material.normal_scale).layers(texture.wrap, reach / texel_length(mesh, texture));
         let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rg16Float);

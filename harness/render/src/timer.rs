@@ -111,10 +111,16 @@ impl<'gpu> FrameTimer<'gpu> {
     /// settings ask for a warm start.
     ///
     /// # Errors
-    /// If the device is lost, or if the other frame has grids of another size.
+    /// If the device is lost, or if the other frame has other bodies or grids of another size.
     pub fn continue_from(&self, before: &Self) -> Result<(), RenderError> {
         let fluences = |of: &Self| of.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
-        for (own, other) in fluences(self).into_iter().zip(fluences(before)) {
+        let [own, others] = [fluences(self), fluences(before)];
+        if own.len() != others.len() {
+            let reason =
+                format!("it has {} bodies through which light diffuses, the other {}", own.len(), others.len());
+            return Err(GpuError::Device { what: "continuing a frame".to_owned(), reason }.into());
+        }
+        for (own, other) in own.into_iter().zip(others) {
             let words = before.executor.words(other)?;
             self.executor.write_buffer(own, bytemuck::cast_slice(&words))?;
         }

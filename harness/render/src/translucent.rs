@@ -139,7 +139,8 @@ fn add(
     let mut resources: Vec<(u32, Bound)> =
         buffers.iter().map(|(binding, buffer)| (*binding, (*buffer).into())).collect();
     resources.push((0, record.into()));
-    resources.extend(textures::bound(builder, pipeline, material, mesh));
+    let reach = thickness::sigma0(material).filter(|_| !reflectance.is_lambert()).unwrap_or_default();
+    resources.extend(textures::bound(builder, pipeline, material, (mesh, reach)));
     if let Reflectance::Table(side, format) = reflectance {
         let binding = if format == Format::R32Float { 6 } else { 4 };
         if builder.binds(pipeline, 1, binding) {

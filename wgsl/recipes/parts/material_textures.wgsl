@@ -47,9 +47,8 @@ fn texture_tangents(normal: vec3f, position_x: vec3f, position_y: vec3f, uv_x: v
     let turn = sign(dot(position_x, across_x));
     let u = turn * (across_x * uv_x.x + across_y * uv_y.x);
     let v = turn * (across_x * uv_x.y + across_y * uv_y.y);
-    // A tiny length would be rounding, and squares of smaller ones underflow.
-    let scale = inverseSqrt(max(max(dot(u, u), dot(v, v)), 1e-30f));
-    return TextureTangents(u * scale, v * scale);
+    // Squares of tiny lengths underflow.
+    return TextureTangents(u * inverseSqrt(max(dot(u, u), 1e-30f)), v * inverseSqrt(max(dot(v, v), 1e-30f)));
 }
 
 // The unit normal of a layer of the texture, at coordinates of its image.

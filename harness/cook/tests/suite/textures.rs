@@ -103,8 +103,18 @@ fn a_normal_leans_along_u_and_against_v() {
     // Light from each side in turn; the tilt is (0.4, -0.2) over the code's range.
     let texel = [178u8, 102, 230, 255];
     let tilt = Vec3::from_array([0, 1, 2].map(|channel| 2.0 * f32::from(texel[channel]) / 255.0 - 1.0));
-    for (mirrored, scale) in [(false, 1.0f32), (true, 1.0), (false, 2.5), (false, -1.0)] {
-        let material = Material { normal_texture: Some(plain(texel)), normal_scale: scale, ..matte() };
+    let stretched = TextureTransform { scale: Vec2::new(6.0, 0.5), ..TextureTransform::IDENTITY };
+    let identity = TextureTransform::IDENTITY;
+    for (mirrored, scale, transform) in [
+        (false, 1.0f32, identity),
+        (true, 1.0, identity),
+        (false, 2.5, identity),
+        (false, -1.0, identity),
+        // Slopes do not change with the number of texels that an image has.
+        (false, 1.0, stretched),
+    ] {
+        let texture = Texture { transform, ..plain(texel) };
+        let material = Material { normal_texture: Some(texture), normal_scale: scale, ..matte() };
         let leans = (tilt * Vec3::new(scale, scale, 1.0)).normalize();
         let normal = Vec3::new(if mirrored { -leans.x } else { leans.x }, leans.y, leans.z);
         for toward in [Vec3::Z, Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(-1.0, -1.0, 1.5)] {

@@ -10,7 +10,7 @@ use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::GpuError;
 
 const RECIPE: &str = "diffusion_solve";
-/// Invocations of a workgroup of passes over all cells or tiles.
+/// Invocations of a workgroup of the pass over all tiles.
 const GROUP: u32 = 64;
 /// Sweeps over both colours before and after each correction.
 const SWEEPS: usize = 2;
@@ -76,7 +76,7 @@ impl Levels {
         for (level, coarser) in made.iter().zip(&made[1..]) {
             let equations = [(0, coarser.faces.into()), (1, coarser.reactions.into())];
             coarsen.push(level.pass_over_tiles(builder, kernels.coarsen, 0, &equations));
-            coarsen.push(coarser.pass_over_all(builder, kernels.list, &[], tiles::count(coarser.cells)));
+            coarsen.push(coarser.pass_over_all(builder, kernels.list, tiles::count(coarser.cells)));
         }
         let sweeps =
             |builder: &mut Builder<'_>, cycle: &mut Vec<Dispatch>, level: &Level, colors: [usize; 2], count| {
@@ -252,14 +252,8 @@ impl Level {
     }
 
     /// Returns a pass with `count` invocations.
-    fn pass_over_all(
-        &self,
-        builder: &mut Builder<'_>,
-        kernel: PipelineId,
-        others: &[(u32, Bound)],
-        count: u32,
-    ) -> Dispatch {
-        let groups = self.groups(builder, kernel, 0, others);
+    fn pass_over_all(&self, builder: &mut Builder<'_>, kernel: PipelineId, count: u32) -> Dispatch {
+        let groups = self.groups(builder, kernel, 0, &[]);
         builder.dispatch(kernel, groups, Workgroups::Count([count.div_ceil(GROUP), 1, 1]))
     }
 }
