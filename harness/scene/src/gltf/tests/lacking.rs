@@ -192,7 +192,6 @@ fn what_moves_and_what_is_no_triangle_is_named() {
             "morph targets: `targets` of mesh 0 (the body is drawn without them)",
             "points and lines: a primitive of mesh 0 (triangles alone are drawn)",
             "skins: `skin` of node `stone` (the body is drawn at rest)",
-            "vertex colours: `COLOR_0` of mesh 0 (the material's colour is drawn alone)",
             "vertex colours: `COLOR_n` after the first of mesh 0 (the first is drawn alone)",
         ]
     );
