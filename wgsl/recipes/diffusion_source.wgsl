@@ -109,16 +109,15 @@ fn diffusion_filled(place: vec3f) -> bool {
     return ((fine[words * (voxel.y + count * voxel.z) + voxel.x / 32u] >> (voxel.x % 32u)) & 1u) != 0u;
 }
 
+//+extinction_per_voxel {
 // The density about a place; `otherwise` where there is no matter.
 fn diffusion_density(place: vec3f, otherwise: f32) -> f32 {
     let cells = source.grid.cells;
     let voxel = vec3u(clamp(place, vec3f(0.0f), vec3f(f32(cells - 1u))));
     let index = voxel.x + cells * (voxel.y + cells * voxel.z);
-    if (EFFECT_EXTINCTION_PER_VOXEL) {
-        return select(otherwise, density[index], nodes[index] != 0u);
-    }
-    return otherwise;
+    return select(otherwise, density[index], nodes[index] != 0u);
 }
+//+extinction_per_voxel }
 
 // A difference of positions along the map, to the nearer of the two texels beside one.
 fn diffusion_beside(texel: vec3u, step: vec2i, position: vec3f) -> vec3f {

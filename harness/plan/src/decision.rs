@@ -526,12 +526,9 @@ impl Case<'_> {
         }
     }
 
-    /// Whether the rung draws a material's images and a mesh's colours.
-    fn draws_images(&self) -> Result<(), String> {
-        match self.rung {
-            Rung::Diffuse(_) => Ok(()),
-            _ => Err(format!("the rung {} draws the factor alone", self.rung)),
-        }
+    /// Answers for an image or a mesh's colours that are called for.
+    fn drawn_by_rung(&self, what: String) -> Answer {
+        if self.rung.draws_images() { on(what) } else { off(format!("the rung {} draws the factor alone", self.rung)) }
     }
 
     fn image(&self, slot: TextureSlot) -> Answer {
@@ -544,20 +541,15 @@ impl Case<'_> {
         if self.object.mesh.uvs.is_empty() {
             return off(format!("{}, but the mesh has no texture coordinates", slot.name()));
         }
-        match self.draws_images() {
-            Ok(()) => on(format!("{} of {} x {} texels", slot.name(), texture.texels.width(), texture.texels.height())),
-            Err(reason) => off(reason),
-        }
+        let [width, height] = [texture.texels.width(), texture.texels.height()];
+        self.drawn_by_rung(format!("{} of {width} x {height} texels", slot.name()))
     }
 
     fn vertex_color(&self) -> Answer {
         if self.object.mesh.colors.is_empty() {
             return off("no colours of vertices");
         }
-        match self.draws_images() {
-            Ok(()) => on("the mesh has colours of vertices"),
-            Err(reason) => off(reason),
-        }
+        self.drawn_by_rung("the mesh has colours of vertices".to_owned())
     }
 
     fn microfacet(&self) -> Answer {

@@ -99,8 +99,7 @@ impl Case<'_> {
     /// Returns the images, and the colours of vertices, that the rung leaves out.
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
-        // The recipe cdrf_shading draws them.
-        if matches!(self.rung, Rung::Diffuse(_)) {
+        if self.rung.draws_images() {
             return Vec::new();
         }
         let slots = [TextureSlot::BaseColor, TextureSlot::Normal].into_iter();

@@ -148,6 +148,11 @@ impl Rung {
         matches!(self, Self::Inside { .. } | Self::Surface)
     }
 
+    /// Whether the rung draws a material's images of colour and normals, and a mesh's colours.
+    pub fn draws_images(self) -> bool {
+        matches!(self, Self::Diffuse(_))
+    }
+
     /// Returns how rays inside find facets; `None` if no light is followed inside.
     pub fn geometry_of_inside(self) -> Option<Geometry> {
         if let Self::Inside { geometry, .. } = self { Some(geometry) } else { None }

@@ -71,15 +71,13 @@ fn address(wrap: Wrap) -> wgpu::AddressMode {
 fn texel_length(mesh: &Mesh, texture: &Texture) -> f32 {
     let transform = texture.transform.affine();
     let size = Vec2::new(texture.texels.width() as f32, texture.texels.height() as f32);
-    let (mut area, mut texels) = (0.0f64, 0.0f64);
-    for corners in mesh.indices.chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|corner| corners[corner] as usize);
-        let across = (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
-        let [a, b, c] = [a, b, c].map(|vertex| size * transform.transform_point2(mesh.uvs[vertex]));
-        area += 0.5 * f64::from(across.length());
-        texels += 0.5 * f64::from((b - a).perp_dot(c - a).abs());
-    }
-    (area / texels).sqrt() as f32
+    let texels = mesh.indices.chunks_exact(3).map(|corners| {
+        let place = |corner: usize| size * transform.transform_point2(mesh.uvs[corners[corner] as usize]);
+        let [a, b, c] = [0, 1, 2].map(place);
+        0.5 * f64::from((b - a).perp_dot(c - a).abs())
+    });
+    let (_, area) = mesh.volume_and_area();
+    (area / texels.sum::<f64>()).sqrt() as f32
 }
 
 /// Unit normals of an image, row by row.
@@ -138,11 +136,8 @@ impl Normals {
         let weight = |step: i64| (-0.5 * (step as f32 / width).powi(2)).exp();
         let weights: Vec<f32> = (-reach..=reach).map(weight).collect();
         let whole: f32 = weights.iter().sum();
+        let weights: Vec<f32> = weights.into_iter().map(|weight| weight / whole).collect();
         let [width, height] = self.size.map(i64::from);
-        let mean = |from: &[Vec3], at: &dyn Fn(i64) -> usize| {
-            let sum: Vec3 = (-reach..=reach).zip(&weights).map(|(step, weight)| *weight * from[at(step)]).sum();
-            sum / whole
-        };
         let places = |count: i64, wrap: Wrap| -> Vec<usize> {
             (-reach..count + reach).map(|place| wrap.texel(place, count) as usize).collect()
         };
@@ -150,14 +145,23 @@ impl Normals {
         let place = |row: usize, column: usize| row * width as usize + column;
         let mut once = Vec::with_capacity(self.normals.len());
         for row in 0..height as usize {
-            for column in 0..width {
-                once.push(mean(&self.normals, &|step| place(row, columns[(column + step + reach) as usize])));
+            for column in 0..width as usize {
+                let beside = &columns[column..=column + 2 * reach as usize];
+                once.push(
+                    weights
+                        .iter()
+                        .zip(beside)
+                        .map(|(weight, at)| *weight * self.normals[place(row, *at)])
+                        .sum::<Vec3>(),
+                );
             }
         }
         let mut twice = Vec::with_capacity(self.normals.len());
-        for row in 0..height {
+        for row in 0..height as usize {
+            let beside = &rows[row..=row + 2 * reach as usize];
             for column in 0..width as usize {
-                let mean = mean(&once, &|step| place(rows[(row + step + reach) as usize], column));
+                let mean: Vec3 =
+                    weights.iter().zip(beside).map(|(weight, at)| *weight * once[place(*at, column)]).sum();
                 twice.push(mean.try_normalize().unwrap_or(Vec3::Z));
             }
         }

@@ -46,6 +46,11 @@ impl Start {
     }
 }
 
+/// The name in reports of a rung whose frames begin in one way.
+fn named(rung: impl std::fmt::Display, start: Start) -> String {
+    format!("{rung}, {}", start.name())
+}
+
 /// Returns what to measure by default.
 pub fn options() -> Options {
     Options { rounds: 5, frame: [128, 128], rungs: RUNGS.iter().filter_map(|name| name.parse().ok()).collect() }
@@ -163,7 +168,7 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
             }
         }
         for (rung, sequence) in &sequences {
-            let name = format!("{rung}, {}", sequence.start.name());
+            let name = named(rung, sequence.start);
             let diffuses = matches!(rung, Rung::Diffusion(_));
             let ms = (options.rounds > 0).then(|| sequence.ms());
             let row =
@@ -183,7 +188,7 @@ fn whole(report: &Report) -> Result<(), String> {
     let lacks = |rung: &str, motion: Motion| report.ms(rung, motion.name(), "residual").is_none();
     for rung in RUNGS {
         for start in Start::ALL {
-            let name = format!("{rung}, {}", start.name());
+            let name = named(rung, start);
             if let Some(motion) = Motion::ALL.into_iter().find(|motion| lacks(&name, *motion)) {
                 return Err(format!("the report has no time of `{name}` for the {}", motion.name()));
             }
@@ -217,7 +222,7 @@ fn table(report: &Report) -> Table {
 }
 
 fn goals(report: &Report) -> Table {
-    let ms = |start: Start| report.ms(&format!("{DIFFUSION}, {}", start.name()), Motion::Light.name(), "residual");
+    let ms = |start: Start| report.ms(&named(DIFFUSION, start), Motion::Light.name(), "residual");
     let mut goals = Vec::new();
     if let [Some(cold), Some(warm)] = Start::ALL.map(ms) {
         let goal =
