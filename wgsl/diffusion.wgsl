@@ -1,6 +1,6 @@
 // diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d0b3361a533cff69
+// Version: 0.2.0, hash 8e2189f9970f5bab
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,
@@ -69,7 +69,7 @@ fn diffusion_milne(relative_index: f32) -> f32 {
 // Domain: open in [0, 1]; distance up to 1e18, at least 0.25 counts; densities up to 1e18, at least 0.001
 //   counts.
 // Outside: finite for magnitudes up to 1e18.
-// Accuracy: lavapipe 3 ulp; portable 10 ulp
+// Accuracy: lavapipe 3 ulp; portable 12 ulp
 fn diffusion_face(open: f32, distance: f32, densities: vec2f) -> f32 {
     let dense = max(densities, vec2f(DIFFUSION_THINNEST));
     return 2.0f * open / (max(distance, DIFFUSION_LEAST_DISTANCE) * (dense.x + dense.y));

@@ -1,6 +1,6 @@
 // ray_footprint: which part of a pixel shows what lies beyond the edge of a facet inside a stone, and which neighbours show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 2641ce86dc99b40a
+// Version: 0.2.0, hash e2be3dedb638e648
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
 //   mixing of neighbours: Persson, "Geometry Buffer Anti-Aliasing", in GPU Pro 3, 2012, for edges of
 //   the drawn mesh. The edges seen through facets, their shares, and the growth: own.
@@ -31,7 +31,7 @@
 //   length; `relative_index` is a ratio.
 // Domain: distance in [1e-4, 1e9], travelled in [0, 1e9], relative_index in [1, 4].
 // Outside: finite for distances from 2^-40 on, ways up to 2^60 and an index from 2^-20 on.
-// Accuracy: lavapipe 3 ulp; portable 8 ulp
+// Accuracy: lavapipe 3 ulp; portable 11 ulp
 fn ray_footprint_growth(distance: f32, travelled: f32, relative_index: f32) -> f32 {
     return 1.0f + travelled / (relative_index * distance);
 }

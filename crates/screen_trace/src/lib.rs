@@ -73,5 +73,8 @@ pub fn crossing(before: f32, surface_before: f32, here: f32, surface: f32) -> f3
     if front <= 0.0 || behind <= 0.0 {
         return 1.0;
     }
-    front / (front + behind)
+    // front / (front + behind) would be a sum of four terms, of which a compiler that takes before
+    // + surface first keeps less than either difference has. Of a quotient it can't.
+    let ratio = front.min(behind) / front.max(behind);
+    (if front >= behind { 1.0 } else { ratio }) / (1.0 + ratio)
 }

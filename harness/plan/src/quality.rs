@@ -80,7 +80,8 @@ const RUNGS: [(Technique, [Rung; 3]); 8] = [
     ),
     (
         Technique::Cdrf,
-        [Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Accurate)],
+        // The drift costs what the cheap closed form costs, and is the nearest to the walks.
+        [Rung::Diffuse(Reflectance::Drift); 3],
     ),
     (Technique::Translucent, [paths(32, Method::Godunov), Rung::Diffusion(64), Rung::Diffusion(128)]),
     (

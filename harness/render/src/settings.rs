@@ -118,7 +118,7 @@ pub struct DiffuseOptions {
 
 impl Default for DiffuseOptions {
     fn default() -> Self {
-        Self { curvature: Curvature::Mean, environment_at_vertices: true }
+        Self { curvature: Curvature::Vertex, environment_at_vertices: true }
     }
 }
 

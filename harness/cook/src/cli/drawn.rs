@@ -79,8 +79,9 @@ struct Gem {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Scattering bodies by their curvature")]
 struct Diffuse {
-    /// Curvature that spreads the light. From the pixel's derivatives: mean (the default), towards
-    /// (towards each light) or naive (|dN| / |dP|). From the mesh: vertex, its mean curvature.
+    /// Curvature that spreads the light. From the mesh: vertex, its mean curvature (the default). From
+    /// the pixel's derivatives, for meshes that deform: mean, towards (towards each light) or naive
+    /// (|dN| / |dP|).
     #[arg(long, value_name = "FORM", value_parser = parse_curvature)]
     curvature: Option<Curvature>,
 }

@@ -175,7 +175,6 @@ pub const SHOTS: [Shot; 54] = [
         ..by_lights("skin_bunny_blur", "Skin: the bunny by texture diffusion", "skin_bunny", "blur")
     },
     Shot {
-        curvature: Curvature::Vertex,
         paragraph: "The curvature-dependent reflectance, with the mean curvature of the mesh at its vertices. No texture, no second pass.",
         ..by_lights("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
     },
@@ -186,7 +185,6 @@ pub const SHOTS: [Shot; 54] = [
     },
     Shot {
         with_law: true,
-        curvature: Curvature::Vertex,
         paragraph: "Skin by the reflectance of curved surfaces: the drift and width of random walks, the law of a half space, shadows, and the \
             scan's colour and slopes, of which each colour keeps what its light does not even out. The red of the terminator comes of \
             the curvature alone.",
@@ -210,7 +208,7 @@ pub const SHOTS: [Shot; 54] = [
     },
     diffused("dragon_diffusion", "Veined jade by diffusion: the dragon, light from behind", "dragon"),
     diffused("figure_diffusion", "Marble by diffusion: a winged figure, light from behind", "figure"),
-    Shot { curvature: Curvature::Vertex, ..bright("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate") },
+    bright("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate"),
 ];
 
 const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
@@ -227,7 +225,7 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         matte: false,
         with_law: false,
         exposure: 1.0,
-        curvature: Curvature::Mean,
+        curvature: Curvature::Vertex,
         samples: SAMPLES,
         paragraph: "",
     }
@@ -341,7 +339,7 @@ impl Shot {
         let light = if left_out.is_empty() { String::new() } else { format!(" --without {}", left_out.join(",")) };
         let law = if self.with_law { " --with half_space,shadow" } else { "" };
         let curvature = match self.curvature {
-            Curvature::Mean => String::new(),
+            Curvature::Vertex => String::new(),
             other => format!(" --curvature {}", other.name()),
         };
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };

@@ -18,12 +18,16 @@ use lapidary_scene::{Light, Scene};
 use std::f32::consts::PI;
 
 /// The compared pictures: name, reflectance, and whether the law of a half space is on. All have
-/// shadows.
-pub(super) const LOOKS: [(&str, Reflectance, bool); 8] = [
+/// shadows. Each reflectance comes without the law, then with it.
+pub(super) const LOOKS: [(&str, Reflectance, bool); 12] = [
     (LAMBERT, Reflectance::Lambert, false),
     ("lambert, half space", Reflectance::Lambert, true),
+    ("wrap", Reflectance::Wrap, false),
+    ("wrap, half space", Reflectance::Wrap, true),
     ("cheap", Reflectance::Cheap, false),
     ("cheap, half space", Reflectance::Cheap, true),
+    ("accurate", Reflectance::Accurate, false),
+    ("accurate, half space", Reflectance::Accurate, true),
     ("power", Reflectance::Power, false),
     ("power, half space", Reflectance::Power, true),
     ("drift", Reflectance::Drift, false),
@@ -38,6 +42,10 @@ const MOST: f64 = 0.5;
 
 /// The measures of a picture: distance after the best exposure and as it is, and the same behind a boundary.
 pub(super) const MEASURES: [&str; 4] = ["law", "law, exposure 1", "boundary", "boundary, exposure 1"];
+
+/// The measure by which the rungs of `--quality` are judged: the distance, after the best exposure, of
+/// what a default draws, which has the law and shadows.
+pub(super) const AS_DRAWN: &str = "as drawn";
 
 /// The zones: name, and the range of the cosine of the scene's first light; the shadowed one holds what
 /// faces the light and does not see it, in no other zone.
@@ -173,7 +181,11 @@ pub(super) fn measure(
                 exposed_distance(&boundary, &refracted),
                 distance(&boundary, &refracted),
             ];
-            rows.push(MEASURES.map(|measure| (look, *name, measure)).into_iter().zip(values).collect::<Vec<_>>());
+            let mut found: Vec<_> = MEASURES.map(|measure| (look, *name, measure)).into_iter().zip(values).collect();
+            if law {
+                found.push(((reflectance.name(), name, AS_DRAWN), values[0]));
+            }
+            rows.push(found);
             timed.push(Timed::new(scene, settings));
         }
     }
@@ -264,7 +276,8 @@ mod tests {
         let of = |look: &str, name: &str, measure: &str| report.value(look, name, measure).expect("measured");
         for name in SCENES {
             for measure in &MEASURES[..2] {
-                for [without, with] in [0, 2, 4, 6].map(|place| [LOOKS[place].0, LOOKS[place + 1].0]) {
+                for pair in LOOKS.chunks_exact(2) {
+                    let [without, with] = [pair[0].0, pair[1].0];
                     assert!(of(with, name, measure) < of(without, name, measure), "{name}: {with}, {measure}");
                 }
                 let others = LOOKS.iter().filter(|(look, ..)| *look != GOAL);
