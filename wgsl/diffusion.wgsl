@@ -1,6 +1,6 @@
 // diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 8e2189f9970f5bab
+// Version: 0.2.0, hash 4b9f88e68ec9992c
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,
@@ -40,6 +40,8 @@ const DIFFUSION_OPAQUE: f32 = 87.0f;
 // The least and the largest extrapolation length in mean free paths.
 const DIFFUSION_NEAREST: f32 = 0.5f;
 const DIFFUSION_OUTERMOST: f32 = 20.0f;
+// The least gamma of a slab: matter that absorbs less counts as this.
+const DIFFUSION_LEAST_GAMMA: f32 = 1e-6f;
 // The largest optical depth of a node.
 const DIFFUSION_DEEPEST: f32 = 1e6f;
 // The largest optical depth along a line.
@@ -224,6 +226,33 @@ fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f
     let strength = 3.0f * (1.0f - g) * (1.0f + g) * c / (1.0f + kappa * c);
     let surface = z / (1.0f + kappa * z) * exp(-min(damped, DIFFUSION_OPAQUE));
     return strength * (surface + t * diffusion_mean(damped, t / c));
+}
+
+// Share of the light that comes through a slab, by diffusion: light falls on the near side along the normal,
+// and its first collisions count as one plane of sources at their mean depth, from which it diffuses to
+// Robin's boundaries on both sides. What passes without a collision is left out: it goes on straight.
+// Returns: flux through the far side, in [0, 0.4] for an index-matched surface; within 2 % of random walks
+//   for an albedo of 0.99 or more, and 10 % for 0.9 up to 4 mean free paths.
+// Units: none; `thickness` and `milne` in mean free paths.
+// Domain: any thickness, clamped to [0, 1e6]; any gamma, clamped to [1e-6, 1]; any milne, clamped to [0.5, 20].
+// Outside: nothing.
+// Accuracy: lavapipe 40 ulp + 1e-30 abs + 10 backward; portable 64 ulp + 1e-30 abs + 12 backward
+fn diffusion_slab(thickness: f32, gamma: f32, milne: f32) -> f32 {
+    let x = clamp(thickness, 0.0f, DIFFUSION_DEEPEST);
+    let g = clamp(gamma, DIFFUSION_LEAST_GAMMA, 1.0f);
+    let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
+    let kappa = 1.7320508f * g;
+    let means = diffusion_ramps(x);
+    let collided = min(x * (means.x + means.y), 1.0f);
+    let place = x * (means.y / (means.x + means.y));
+    // With u for kappa z, of sinh a + u cosh a over (1 + u^2) sinh b + 2 u cosh b the growing exponentials are
+    // taken out; what is left are sums of positive terms.
+    let u = kappa * z;
+    let before = diffusion_scattered(0.0f, 2.0f * kappa * place);
+    let all = diffusion_scattered(0.0f, 2.0f * kappa * x);
+    let outward = (before + u * (2.0f - before)) / ((1.0f + u * u) * all + 2.0f * u * (2.0f - all));
+    let passed = exp(-min(kappa * (x - place), DIFFUSION_OPAQUE));
+    return (1.0f - g) * (1.0f + g) * collided * (outward * passed);
 }
 
 // What the eye sees of diffusion_fluence from a depth on: the integral of fluence(t) e^(-t/m) / m over t

@@ -89,6 +89,24 @@ fn diffusion_fluence_naive(depth: f32, cosine_light: f32, gamma: f32, milne: f32
     return a * exp(-kappa * depth) + b * exp(-depth / m0);
 }
 
+// Share of the light that comes through a slab, as it is printed.
+// Returns: albedo (1 - e^-x) (sinh a + u cosh a) / ((1 + u^2) sinh b + 2 u cosh b) with u = kappa milne.
+// Units: as diffusion_slab.
+// Domain: thickness in [0.5, 8], gamma in [0.1, 0.5], milne in [0.7, 4].
+// Outside: infinity over infinity for a thick slab; 0 / 0 for a thickness or a gamma of 0, few digits about it.
+// Accuracy: naive
+fn diffusion_slab_naive(thickness: f32, gamma: f32, milne: f32) -> f32 {
+    let kappa = 1.7320508f * gamma;
+    let left = exp(-thickness);
+    let collided = 1.0f - left;
+    let place = 1.0f - thickness * left / collided;
+    let u = kappa * milne;
+    let a = kappa * place;
+    let b = kappa * thickness;
+    let outward = (sinh(a) + u * cosh(a)) / ((1.0f + u * u) * sinh(b) + 2.0f * u * cosh(b));
+    return (1.0f - gamma * gamma) * collided * outward;
+}
+
 // The local part with closed forms of what the grid shows above its first node, between its nodes, and below
 // them.
 // Returns: law - albedo / (4 pi) (m0 / (m + m0) + angle (above + below + rest)).

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
-// requires: cdrf, curvature, environment, fresnel, half_space, microfacet, reflective_shadow_map
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, stone_shadow, harmonics, reflection, scattering_law, material_textures
+// requires: cdrf, curvature, diffusion, environment, fresnel, half_space, microfacet, reflective_shadow_map
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow, stone_shadow, harmonics, reflection, scattering_law, material_textures
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -43,6 +43,8 @@ const CDRF_FORM_QUADRATURE: u32 = 5u;
 const CDRF_FORM_SPHERICAL: u32 = 6u;
 const SPREAD_FORM_POWER: u32 = 1u;
 const SPREAD_FORM_DRIFT: u32 = 2u;
+// Factor on the way of light through a body.
+const CDRF_LOST_SIDEWAYS: f32 = 1.3f;
 const CURVATURE_FORM_TOWARDS: u32 = 1u;
 const CURVATURE_FORM_NAIVE: u32 = 2u;
 const CURVATURE_FORM_VERTEX: u32 = 3u;
@@ -66,6 +68,8 @@ struct CdrfMaterial {
     alpha: f32,
     // Mean free path of each channel, in units of length; made safe by the host as sigma0 is.
     free_path: vec3f,
+    // diffusion_milne of the index at the boundary.
+    milne: f32,
     law: ScatteringLaw,
     base_color_place: TexturePlace,
     normal_place: TexturePlace,
@@ -338,6 +342,31 @@ fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
+// The share of each colour's light that this bent surface can have taken in itself. On a sphere, light that arrives past
+// the terminator at a cosine -c has entered at most 2 c radii up the light. Where the light's way is longer by more than
+// twice the spread, another part of the body or another body took it.
+fn cdrf_own(rise: vec3f, cosine: f32, curvature: f32) -> vec3f {
+    let own = 2.0f * (abs(cosine) + cdrf_sigmas(curvature));
+    return clamp(vec3f(2.0f) - rise * abs(cdrf_finite(curvature)) / own, vec3f(0.0f), vec3f(1.0f));
+}
+
+// Reflectance under a light that enters around the point or behind it, as its map says: what enters around is spread, and what
+// enters behind comes through the body as through a slab. The larger of both counts: the spread was fitted to whole
+// spheres, through which light comes as well. Where the light falls on the point itself its way is short, and nearly nothing
+// collides on it. Through a bent body light also gets lost sideways, as if its way were longer.
+fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, curvature: f32, shadow: TranslucentShadow, cosine_eye: f32) -> vec3f {
+    let cosine = max(cosines.x, max(cosines.y, cosines.z));
+    let spread = max(reflectance - (vec3f(1.0f) - shadow.visible) * max(cosines, vec3f(0.0f)), vec3f(0.0f));
+    let depth = CDRF_LOST_SIDEWAYS * shadow.way / max(material.free_path, vec3f(1e-12f));
+    let passed = vec3f(
+        diffusion_slab(depth.x, material.law.gamma.x, material.milne),
+        diffusion_slab(depth.y, material.law.gamma.y, material.milne),
+        diffusion_slab(depth.z, material.law.gamma.z, material.milne),
+    );
+    let seen = 0.31830987f * material.law.light * scattering_law_inside(cosine_eye, material.law);
+    return max(law * spread * cdrf_own(shadow.rise, cosine, curvature), shadow.cosine * passed * seen);
+}
+
 // Irradiance from all around, per channel, by a normal.
 fn cdrf_around(around: HarmonicsAround, sigma: vec3f) -> vec3f {
     let red = cdrf_harmonic_weights(sigma.x);
@@ -368,15 +397,26 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             law = scattering_law_of_light(dot(normal, toward_eye), cdrf_entered(reflectance, curvature), material.law);
         }
         //+half_space }
-        if (EFFECT_SHADOW) {
-            let most = max(cosine, max(cosines.x, max(cosines.y, cosines.z)));
-            reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, most, input.position, normal));
-        }
+        if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
+            //+translucent_shadow {
+            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, material.free_path);
+            var seen = vec3f(1.0f);
+            if (EFFECT_HALF_SPACE) {
+                seen = law;
+            }
+            reflectance = cdrf_translucent(reflectance, seen, cosines, curvature, shadow, dot(normal, toward_eye));
+            //+translucent_shadow }
+        } else {  //+translucent_shadow
+            if (EFFECT_SHADOW) {
+                let most = max(cosine, max(cosines.x, max(cosines.y, cosines.z)));
+                reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, most, input.position, normal));
+            }
+            if (EFFECT_HALF_SPACE) {
+                reflectance *= law;
+            }
+        }  //+translucent_shadow
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
-        }
-        if (EFFECT_HALF_SPACE) {
-            reflectance *= law;
         }
         received += arrival.irradiance * reflectance;
     }

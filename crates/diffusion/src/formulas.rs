@@ -422,6 +422,29 @@ fn of_light() -> Vec<Formula> {
         })
         .benign(2e-5)
         .build(),
+        formula(M, "diffusion_slab", mirror::slab, oracle::slab, |draws| {
+            (depth(draws), matter(draws), extrapolation(draws))
+        })
+        .edge("no slab", |(x, gamma, _)| x == 0.0 && gamma < 0.9)
+        .edge("thin", |(x, gamma, _)| x > 0.0 && x < 1e-9 && gamma < 0.9)
+        .edge("thick, nothing absorbed", |(x, gamma, _)| x > 1e5 && gamma == 0.0)
+        .edge("thick, hardly anything absorbed", |(x, gamma, _)| x > 1e4 && gamma > 1e-6 && gamma < 1e-4)
+        .edge("nothing comes through", |(x, gamma, _)| x > 1e3 && gamma > 0.5 && gamma < 0.9)
+        .edge("nothing scattered", |(x, gamma, _)| x > 0.1 && gamma == 1.0)
+        .edge("a boundary that reflects much", |(x, gamma, milne)| x > 0.1 && gamma < 0.9 && milne > 20.0)
+        .invariant("a share", |_, share: f32| within("share", share, 0.0, 0.52))
+        .hard_case(
+            "a thin slab that absorbs nothing",
+            (2f32.powi(-30), 0.0, mirror::DIFFUSION_MILNE),
+            (&[4.656_612_873_1e-10], 1e-15),
+            ("diffusion_slab_naive", f64::INFINITY),
+        )
+        .build(),
+        formula(M, "diffusion_slab_naive", mirror::slab_naive, oracle::slab_naive, |draws| {
+            (draws.between(0.5, 8.0), draws.between(0.1, 0.5), draws.between(0.7, 4.0))
+        })
+        .benign(2e-5)
+        .build(),
         formula(M, "diffusion_tail", mirror::tail, oracle::tail, |draws| {
             (depth(draws), cosine(draws), cosine(draws), matter(draws), extrapolation(draws))
         })

@@ -46,6 +46,8 @@ pub const DIFFUSION_OPAQUE: f32 = 87.0;
 pub const DIFFUSION_NEAREST: f32 = 0.5;
 /// The largest extrapolation length in mean free paths.
 pub const DIFFUSION_OUTERMOST: f32 = 20.0;
+/// The least gamma of a slab: matter that absorbs less counts as this.
+pub const DIFFUSION_LEAST_GAMMA: f32 = 1e-6;
 /// The largest optical depth of a node.
 pub const DIFFUSION_DEEPEST: f32 = 1e6;
 /// The largest optical depth along a line.
@@ -195,6 +197,38 @@ pub fn fluence_naive(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f
     let b = -3.0 * (1.0 - gamma * gamma) * m0 * m0 / (1.0 - kappa * kappa * m0 * m0);
     let a = -b * (1.0 + milne / m0) / (1.0 + kappa * milne);
     a * (-kappa * depth).exp() + b * (-depth / m0).exp()
+}
+
+/// Returns the share of light that comes through a slab.
+pub fn slab(thickness: f32, gamma: f32, milne: f32) -> f32 {
+    let x = thickness.clamp(0.0, DIFFUSION_DEEPEST);
+    let g = gamma.clamp(DIFFUSION_LEAST_GAMMA, 1.0);
+    let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
+    let kappa = 1.7320508 * g;
+    let means = ramps(x);
+    let collided = (x * (means.x + means.y)).min(1.0);
+    let place = x * (means.y / (means.x + means.y));
+    // With u for kappa z, of sinh a + u cosh a over (1 + u^2) sinh b + 2 u cosh b the growing exponentials are
+    // taken out; what is left are sums of positive terms.
+    let u = kappa * z;
+    let before = scattered(0.0, 2.0 * kappa * place);
+    let all = scattered(0.0, 2.0 * kappa * x);
+    let outward = (before + u * (2.0 - before)) / ((1.0 + u * u) * all + 2.0 * u * (2.0 - all));
+    let passed = (-(kappa * (x - place)).min(DIFFUSION_OPAQUE)).exp();
+    (1.0 - g) * (1.0 + g) * collided * (outward * passed)
+}
+
+/// Computes the same as it is printed, a naive form.
+pub fn slab_naive(thickness: f32, gamma: f32, milne: f32) -> f32 {
+    let kappa = 1.7320508 * gamma;
+    let left = (-thickness).exp();
+    let collided = 1.0 - left;
+    let place = 1.0 - thickness * left / collided;
+    let u = kappa * milne;
+    let a = kappa * place;
+    let b = kappa * thickness;
+    let outward = (a.sinh() + u * a.cosh()) / ((1.0 + u * u) * b.sinh() + 2.0 * u * b.cosh());
+    (1.0 - gamma * gamma) * collided * outward
 }
 
 /// Returns what the eye sees of [`fluence`] from a depth on.

@@ -146,6 +146,7 @@ impl Case<'_> {
             Effect::Color => self.color(),
             Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
             Effect::Shadow => self.shadow(),
+            Effect::TranslucentShadow => self.translucent_shadow(),
             Effect::ColoredShadow => self.colored_shadow(),
             Effect::Environment => self.environment(),
             Effect::Dielectric => self.dielectric(),
@@ -483,6 +484,26 @@ impl Case<'_> {
         match casting::caster(self.object, self.scene, Casting::Opaque) {
             Some(caster) if !std::ptr::eq(caster, self.object) => on(format!("{} may stand in its light", caster.name)),
             _ => off(own),
+        }
+    }
+
+    fn translucent_shadow(&self) -> Answer {
+        for (effect, (on, reason)) in [(Effect::Shadow, self.shadow()), (Effect::HalfSpace, self.half_space())] {
+            if self.request.without.has(effect) {
+                return off(format!("{effect} is left out"));
+            }
+            if !on {
+                return off(format!("no {effect}: {reason}"));
+            }
+        }
+        match self.rung {
+            Rung::Diffuse(of) if !of.is_lambert() => match self.cdrf() {
+                (true, _) if self.request.without.has(Effect::Cdrf) => off("cdrf is left out"),
+                (true, _) => on("a shadow on a body that scatters"),
+                (false, reason) => off(reason),
+            },
+            Rung::Diffuse(_) => off("the rung is Lambert's law"),
+            _ => off("light is followed through the body"),
         }
     }
 

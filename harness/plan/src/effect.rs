@@ -77,6 +77,8 @@ effects! {
     ExtinctionPerVoxel = "extinction_per_voxel", "EFFECT_EXTINCTION_PER_VOXEL";
     /// Shadows that bodies cast on one another and on themselves.
     Shadow = "shadow", "EFFECT_SHADOW";
+    /// Shadows on a scattering body that its light softens, and light through its thin parts.
+    TranslucentShadow = "translucent_shadow", "EFFECT_TRANSLUCENT_SHADOW";
     /// Light that clear stones let through and colour, on what lies behind them.
     ColoredShadow = "colored_shadow", "EFFECT_COLORED_SHADOW";
     /// Diffuse light from all directions.

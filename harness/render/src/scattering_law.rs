@@ -31,8 +31,13 @@ pub(super) struct ScatteringLaw {
 impl ScatteringLaw {
     /// Returns the law of an object's material. Its surface refracts if it also reflects.
     pub(super) fn of_object(material: &Material, decisions: &Decisions) -> Self {
+        Self::of(material, Self::index_of(material, decisions), decisions.has(Effect::Reflection))
+    }
+
+    /// Returns the index at the boundary: 1 if the surface reflects nothing.
+    pub(super) fn index_of(material: &Material, decisions: &Decisions) -> f32 {
         let reflects = decisions.has(Effect::Microfacet) || decisions.has(Effect::Reflection);
-        Self::of(material, if reflects { material.ior } else { 1.0 }, decisions.has(Effect::Reflection))
+        if reflects { material.ior } else { 1.0 }
     }
 
     /// Returns the law behind a boundary of this index. `is_polished` says that the recipe takes away what

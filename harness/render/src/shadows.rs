@@ -3,6 +3,7 @@
 
 use super::colored_shadow::ColoredShadows;
 use super::lighting::Lighting;
+use super::mesh_buffers::MeshBuffers;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::{self, Drawn, Part};
 use super::{RenderError, Rung, light_views};
@@ -38,8 +39,10 @@ impl Shadows {
     ) -> Result<Option<Self>, RenderError> {
         let on_surfaces = || parts.iter().filter(|part| matches!(part.rung, Rung::Diffuse(_)));
         let lit = || on_surfaces().flat_map(|part| &part.objects);
-        let opaque = casters(lighting, lit(), (Effect::Shadow, Casting::Opaque));
-        let stones = casters(lighting, lit(), (Effect::ColoredShadow, Casting::Clear));
+        let is_entered =
+            |name: &String| lit().any(|drawn| drawn.name == *name && drawn.decisions.has(Effect::TranslucentShadow));
+        let opaque = casters(lighting, lit(), (Effect::Shadow, Casting::Opaque), &is_entered);
+        let stones = casters(lighting, lit(), (Effect::ColoredShadow, Casting::Clear), &|_| false);
         let casting = opaque.iter().chain(&stones).map(|(_, body)| casting::bounds(body));
         let Some(bounds) = casting.reduce(Bounds::joined) else { return Ok(None) };
         let lights = &lighting.scene.lights;
@@ -54,7 +57,12 @@ impl Shadows {
             let mut maps = ReflectiveShadowMaps::new(builder, &views, side, "for shadows")?;
             for (name, body) in opaque {
                 let shape = lighting.shapes.of(builder, &name, body)?;
-                maps.add_caster(builder, &name, &shape)?;
+                if is_entered(&name) {
+                    let mesh = builder.of_object(&name, |builder| MeshBuffers::of(builder, shape, body))?;
+                    maps.add(builder, &name, &mesh)?;
+                } else {
+                    maps.add_caster(builder, &name, &shape)?;
+                }
             }
             Some(maps)
         };
@@ -81,27 +89,37 @@ impl Shadows {
     }
 }
 
-/// Returns the bodies of this kind that may keep light from those with this effect.
+/// Returns the bodies of this kind that may keep light from those with this effect, and those that `is_wanted` names.
 fn casters<'a, 'b: 'c, 'c>(
     lighting: &Lighting<'a>,
     lit: impl Iterator<Item = &'c Drawn<'b>>,
     (effect, kind): (Effect, Casting),
+    is_wanted: &dyn Fn(&String) -> bool,
 ) -> Vec<Caster<'a>> {
     let lit: Vec<_> = lit
         .filter(|drawn| drawn.decisions.has(effect))
         .map(|drawn| (drawn.object, casting::bounds(drawn.object)))
         .collect();
-    casters_on(lighting, &lit, kind)
+    casters_or(lighting, &lit, kind, is_wanted)
 }
 
 /// Returns the bodies of this kind that may keep light from some of `lit`, each given with its box.
 pub(super) fn casters_on<'a>(lighting: &Lighting<'a>, lit: &[(&Object, Bounds)], kind: Casting) -> Vec<Caster<'a>> {
+    casters_or(lighting, lit, kind, &|_| false)
+}
+
+fn casters_or<'a>(
+    lighting: &Lighting<'a>,
+    lit: &[(&Object, Bounds)],
+    kind: Casting,
+    is_wanted: &dyn Fn(&String) -> bool,
+) -> Vec<Caster<'a>> {
     let scene = lighting.scene;
     let casts = |body: &Object| {
         let caster = (body, casting::bounds(body));
         lit.iter().any(|receiver| casting::casts(caster, *receiver, &scene.lights))
     };
     let all = scene.objects.iter().zip(variant::names(scene));
-    let wanted = all.filter(|(body, _)| Casting::of(body) == kind && casts(body));
+    let wanted = all.filter(|(body, name)| Casting::of(body) == kind && (casts(body) || is_wanted(name)));
     wanted.map(|(body, name)| (name, body)).collect()
 }

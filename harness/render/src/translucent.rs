@@ -174,6 +174,7 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
     let record = record.with("alpha", material.roughness * material.roughness);
     let record = record.with("free_path", safe(thickness::free_path(material)));
+    let record = record.with("milne", lapidary_diffusion::milne(ScatteringLaw::index_of(material, decisions)));
     let record = record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record));
     let record =
         record.within("base_color_place", |record| textures::place(record, material.base_color_texture.as_ref()));

@@ -40,6 +40,7 @@ pub(super) fn promises() -> Vec<Promise> {
         accurate("diffusion_fluence", NOTHING, |draws| {
             (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws))
         }),
+        accurate("diffusion_slab", NOTHING, |draws| (any_finite(draws), any_finite(draws), any_finite(draws))),
         accurate("diffusion_tail", NOTHING, |draws| {
             (any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws), any_finite(draws))
         }),

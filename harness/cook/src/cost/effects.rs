@@ -191,6 +191,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             stands_on: &[],
         },
         Case {
+            name: "wax_bunny",
+            scene: one("wax_bunny")?,
+            settings: Settings { half_space: true, shadows: true, ..settings("drift") },
+            effects: &[Effect::TranslucentShadow],
+            stands_on: &[],
+        },
+        Case {
             name: "head",
             scene: coloured,
             settings: settings("accurate"),

@@ -61,7 +61,8 @@ fn plan_prints_one_json_document() {
         assert!(number("times_fast") == measured && row["error_measure"].is_string() == measured, "{row}");
     }
     assert_eq!(on("slate"), ["shadow", "colored_shadow", "environment", "microfacet"]);
-    assert_eq!(on("wax"), ["cdrf", "half_space", "shadow", "colored_shadow", "environment", "microfacet"]);
+    let wax = ["cdrf", "half_space", "shadow", "translucent_shadow", "colored_shadow", "environment", "microfacet"];
+    assert_eq!(on("wax"), wax);
     assert_eq!(on("marble"), ["diffusion", "environment", "dielectric", "microfacet"]);
     let pipelines: BTreeSet<String> = rows("pipelines").iter().map(|row| text(row, "name")).collect();
     assert!(rows("pipelines").iter().all(|row| row["overrides"].is_object() && !text(row, "recipe").is_empty()));
@@ -75,11 +76,11 @@ fn plan_prints_one_json_document() {
     // The same with effects left out on request, and with a requested technique.
     let plan = |arguments: &[&str]| succeeds(folder().path(), &[&["plan"], arguments].concat()).stdout;
     assert!(plan(&["brilliant", "--without", "dispersion"]).contains("left out on request"));
-    assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung cheap of recipe cdrf_shading"));
+    assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung drift of recipe cdrf_shading"));
     assert!(plan(&["wax", "--with", "optical_path"]).contains("asked for, whatever its thickness"));
     let shadowed = plan(&["wax", "--with", "cdrf,shadow"]);
     assert!(
-        shadowed.contains("by rung cheap") && shadowed.contains("reflective shadow maps for shadows"),
+        shadowed.contains("by rung drift") && shadowed.contains("reflective shadow maps for shadows"),
         "{shadowed}"
     );
     assert!(plan(&["bunny", "--rung", "lambert-shadowed"]).contains("it may stand in its own light"));

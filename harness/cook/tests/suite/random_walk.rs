@@ -150,6 +150,25 @@ fn the_mean_transmittance_of_veins_is_beers() {
     assert!((found - (-depth).exp()).abs() < 4.0 * error && (0.3..3.0).contains(&depth));
 }
 
+/// What `diffusion_slab` says of itself: how near it is to walks through a slab that collide at least once.
+#[test]
+fn diffusion_through_a_slab_is_near_the_walks() {
+    for (albedo, thicknesses, most) in
+        [(1.0f32, &[0.5f32, 1.0, 2.0, 4.0, 8.0][..], 0.02), (0.99, &[0.5, 1.0, 2.0, 4.0, 8.0], 0.02), (0.9, &[0.5, 1.0, 2.0, 4.0], 0.1)]
+    {
+        for &thickness in thicknesses {
+            let exits = walked(&Slab { thickness, ..deep(albedo) }, UNIFORM, 400_000);
+            let through = |exit: &&SlabExit| exit.outcome == slab::TRANSMITTED && exit.scatterings > 0;
+            let found = exits.iter().filter(through).count() as f64 / exits.len() as f64;
+            let error = (found * (1.0 - found) / exits.len() as f64).sqrt();
+            let gamma = lapidary_half_space::gamma(albedo, 0.0);
+            let expected = f64::from(lapidary_diffusion::slab(thickness, gamma, lapidary_diffusion::DIFFUSION_MILNE));
+            println!("albedo {albedo}, thickness {thickness}: {found:.4} ± {error:.4}, by diffusion {expected:.4}");
+            assert!((found - expected).abs() < most * found + 4.0 * error, "{albedo} {thickness}: {found} {expected}");
+        }
+    }
+}
+
 /// Without absorption nothing is lost. A boundary, veins and forward scattering change where light
 /// leaves, not how much.
 #[test]

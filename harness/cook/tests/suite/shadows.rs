@@ -9,8 +9,8 @@ use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::Settings;
 use lapidary_scene::surfaces::{rounded_box, sphere, torus};
-use lapidary_scene::{Bvh, Light, Material, Mesh, Object, Scene};
-use std::f64::consts::{FRAC_1_PI, TAU};
+use lapidary_scene::{Bvh, Density, Light, Material, Medium, Mesh, Object, Scene};
+use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 const SIDE: u32 = 200;
 /// Texels along a side of a map, as in the renderer.
@@ -318,6 +318,55 @@ fn light_through_a_clear_ball_is_colored_by_its_way_inside() {
         }
         println!("{compared} pixels");
         assert!(compared > 300, "{compared}");
+    }
+}
+
+/// Through a ball of scattering matter, lit from behind, comes what the slab's closed form says of the way inside: at its
+/// middle, where the light's way is the diameter and enters head-on.
+#[test]
+fn light_comes_through_a_body_as_through_a_slab() {
+    let skin = Scene::named("skin").expect("built in");
+    let absorption = Vec3::new(0.004, 0.02, 0.05);
+    let medium =
+        Medium { scattering: Vec3::new(2.0, 1.6, 1.8), absorption, anisotropy: 0.0, density: Density::Uniform };
+    let material = Material { medium: Some(medium), sigma0: None, ..skin.objects[0].material.clone() };
+    let camera = lapidary_scene::Camera::upright(Vec3::new(0.0, 0.0, 200.0), Vec3::ZERO, 0.12);
+    let sun = Light::Directional { toward: Vec3::NEG_Z, irradiance: Vec3::splat(PI as f32) };
+    let lamp = Light::Point { position: Vec3::new(0.0, 0.0, -400.0), intensity: Vec3::splat(16e4 * PI as f32) };
+    let path = lapidary_plan::thickness::free_path(&material).expect("a medium").to_array();
+    let albedo = lapidary_plan::thickness::albedo(&material).expect("a medium");
+    for (light, radius) in [(sun, 2.0f64), (sun, 6.0), (lamp, 2.0)] {
+        let ball = Object::new("ball", sphere(radius, 256), material.clone());
+        // A bead that stands in the light of one side calls for shadows.
+        let aside = DVec3::new(0.8 * radius, 0.0, -2.0 * radius);
+        let bead = sphere(0.1 * radius, 32).placed(glam::DQuat::IDENTITY, aside);
+        let bead = Object::new("bead", bead, material.clone());
+        let scene = Scene { objects: vec![ball, bead], lights: vec![light], camera, ..skin.clone() };
+        let draw = |without: &[Effect]| {
+            let usual = settings("drift");
+            let without = usual.without.and(Effects::of(without));
+            let settings = Settings { half_space: true, shadows: true, without, ..usual };
+            render::render(super::gpu(), &scene, &settings).expect("rendered").linear
+        };
+        let middle = ((SIDE / 2) * SIDE + SIDE / 2) as usize;
+        let [with, without] = [draw(&[]), draw(&[Effect::TranslucentShadow])].map(|picture| picture[middle]);
+        // A lamp shines on the ball's far end, not on its centre.
+        let irradiance = if light == sun { PI } else { 16e4 * PI / (400.0 + radius).powi(2) };
+        for channel in 0..3 {
+            let gamma = lapidary_half_space::gamma(albedo[channel], 0.0);
+            let depth = 1.3 * 2.0 * radius as f32 / path[channel];
+            let passed = lapidary_diffusion::slab(depth, gamma, lapidary_diffusion::DIFFUSION_MILNE);
+            // The base color is a factor on what fits the medium.
+            let color = f64::from(material.base_color[channel] / lapidary_half_space::reflectance(gamma));
+            let expected = color * irradiance / PI * f64::from(passed * lapidary_half_space::exit(1.0, gamma));
+            let found = f64::from(with[channel]);
+            println!("{light:?}, radius {radius}, channel {channel}: {found:.5}, {expected:.5}, {:.5}", without[channel]);
+            // The filter takes in the ball around its far end, where the light falls aslant and its way is shorter: squares of
+            // its width of half a mean free path, for two directions.
+            let bent = 2.0 * (0.5 * f64::from(path[channel]) / radius).powi(2);
+            assert!((found / expected - 1.0).abs() < 0.01 + bent, "{light:?} {radius} {channel}: {found} {expected}");
+            assert!(f64::from(without[channel]) < 0.1 * found, "{radius} {channel}: {} {found}", without[channel]);
+        }
     }
 }
 

@@ -13,7 +13,7 @@ fn each_body_calls_for_a_technique_of_its_own() {
     let decisions = Decisions::all(&scene, &settings.request());
     let rungs: Vec<String> = decisions.iter().map(|decisions| decisions.rung.to_string()).collect();
     let stone = "walk-8+tracker";
-    assert_eq!(rungs, ["lambert", stone, stone, "cheap", "diffusion-64", "bvh-8+tracker"]);
+    assert_eq!(rungs, ["lambert", stone, stone, "drift", "diffusion-64", "bvh-8+tracker"]);
 }
 
 /// Uses a 4:3 picture, with a ray through every tenth pixel of 640 by 480.

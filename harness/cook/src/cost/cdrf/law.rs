@@ -40,6 +40,12 @@ const GOAL: &str = "drift, half space";
 /// Largest share of the distance of Lambert's law with shadows that is a goal.
 const MOST: f64 = 0.5;
 
+/// The shadows of the compared pictures by the goal's reflectance: name, whether there are any, and what is left out.
+const SHADOWS: [(&str, bool, &[Effect]); 3] =
+    [("none", false, &[]), ("hard", true, &[Effect::TranslucentShadow]), ("translucent", true, &[])];
+/// The measure of these pictures.
+const SHADOW: &str = "shadow";
+
 /// The measures of a picture: distance after the best exposure and as it is, and the same behind a boundary.
 pub(super) const MEASURES: [&str; 4] = ["law", "law, exposure 1", "boundary", "boundary, exposure 1"];
 
@@ -188,6 +194,13 @@ pub(super) fn measure(
             rows.push(found);
             timed.push(Timed::new(scene, settings));
         }
+        for (shadow, cast, without) in SHADOWS {
+            let usual = settings(Reflectance::Drift, true, false);
+            let settings = Settings { shadows: cast, without: usual.without.and(Effects::of(without)), ..usual };
+            let picture = drawn(gpu, scene, &settings)?;
+            rows.push(vec![((shadow, *name, SHADOW), exposed_distance(&picture, &truth))]);
+            timed.push(Timed::new(scene, settings));
+        }
     }
     let timings = timing::time(gpu, &timed, options.rounds, progress)?;
     for (rows, timing) in rows.into_iter().zip(timings) {
@@ -214,6 +227,23 @@ pub(super) fn table(report: &Report) -> Table {
          exposure 1, all with shadows. Behind a boundary: drawn with the surface's reflection on, less the highlights, \
          beside walks through surfaces that refract. Pictures of {SIDE} × {SIDE} pixels, one sample each; milliseconds \
          without the reflection, {}.",
+        report.run()
+    ))
+}
+
+/// Shows the distances and times of each kind of shadow.
+pub(super) fn shadows_table(report: &Report) -> Table {
+    let mut table =
+        Table::of("cdrf_shadows", "Shadows, beside random walks", report.rungs(SHADOW)).column("shadows", |shadow| {
+            (*shadow).to_owned()
+        });
+    for name in SCENES {
+        table = table
+            .column(name, |shadow| figure(report.value(shadow, name, SHADOW), 3))
+            .column("ms", |shadow| figure(report.ms(shadow, name, SHADOW), 1));
+    }
+    table.note(format!(
+        "By the drift and the law of a half space: distance from the walks after the best exposure, and milliseconds of          {SIDE} × {SIDE} pixels, {}.",
         report.run()
     ))
 }

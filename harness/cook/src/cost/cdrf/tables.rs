@@ -33,6 +33,7 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
         ),
         walked(report),
         law::table(report),
+        law::shadows_table(report),
         law::zones_table(report),
         law::goals(report),
         goals(report),
