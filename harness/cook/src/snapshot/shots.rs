@@ -49,7 +49,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 54] = [
+pub const SHOTS: [Shot; 55] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -165,7 +165,7 @@ pub const SHOTS: [Shot; 54] = [
     bright("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
     bright("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
     Shot {
-        paragraph: "One mesh four ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, and random \
+        paragraph: "One mesh five ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, the same with its shadows, and random \
             walks. This is Lambert's law.",
         ..by_lights("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
     },
@@ -179,7 +179,14 @@ pub const SHOTS: [Shot; 54] = [
         ..by_lights("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
     },
     Shot {
-        paragraph: "The same with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
+        with_law: true,
+        paragraph: "The same by the drift, with the law of a half space and the shadows of matter that scatters: soft where light spreads into \
+            them, and bright where it comes through the ears.",
+        ..by_lights("skin_bunny_translucent", "Skin: the bunny by curvature, with its shadows", "skin_bunny", "drift")
+    },
+    Shot {
+        curvature: Curvature::Mean,
+        paragraph: "The reflectance alone with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
             as this.",
         ..by_lights("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
     },
