@@ -1,6 +1,6 @@
 // diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 4b9f88e68ec9992c
+// Version: 0.2.0, hash c9192dd43c9aa852
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,
@@ -243,7 +243,7 @@ fn diffusion_slab(thickness: f32, gamma: f32, milne: f32) -> f32 {
     let z = clamp(milne, DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508f * g;
     let means = diffusion_ramps(x);
-    let collided = min(x * (means.x + means.y), 1.0f);
+    let collided = x * (means.x + means.y);
     let place = x * (means.y / (means.x + means.y));
     // With u for kappa z, of sinh a + u cosh a over (1 + u^2) sinh b + 2 u cosh b the growing exponentials are
     // taken out; what is left are sums of positive terms.

@@ -206,7 +206,7 @@ pub fn slab(thickness: f32, gamma: f32, milne: f32) -> f32 {
     let z = milne.clamp(DIFFUSION_NEAREST, DIFFUSION_OUTERMOST);
     let kappa = 1.7320508 * g;
     let means = ramps(x);
-    let collided = (x * (means.x + means.y)).min(1.0);
+    let collided = x * (means.x + means.y);
     let place = x * (means.y / (means.x + means.y));
     // With u for kappa z, of sinh a + u cosh a over (1 + u^2) sinh b + 2 u cosh b the growing exponentials are
     // taken out; what is left are sums of positive terms.
