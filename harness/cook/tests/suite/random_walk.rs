@@ -153,9 +153,11 @@ fn the_mean_transmittance_of_veins_is_beers() {
 /// What `diffusion_slab` says of itself: how near it is to walks through a slab that collide at least once.
 #[test]
 fn diffusion_through_a_slab_is_near_the_walks() {
-    for (albedo, thicknesses, most) in
-        [(1.0f32, &[0.5f32, 1.0, 2.0, 4.0, 8.0][..], 0.02), (0.99, &[0.5, 1.0, 2.0, 4.0, 8.0], 0.02), (0.9, &[0.5, 1.0, 2.0, 4.0], 0.1)]
-    {
+    for (albedo, thicknesses, most) in [
+        (1.0f32, &[0.5f32, 1.0, 2.0, 4.0, 8.0][..], 0.02),
+        (0.99, &[0.5, 1.0, 2.0, 4.0, 8.0], 0.02),
+        (0.9, &[0.5, 1.0, 2.0, 4.0], 0.1),
+    ] {
         for &thickness in thicknesses {
             let exits = walked(&Slab { thickness, ..deep(albedo) }, UNIFORM, 400_000);
             let through = |exit: &&SlabExit| exit.outcome == slab::TRANSMITTED && exit.scatterings > 0;

@@ -360,7 +360,10 @@ fn light_comes_through_a_body_as_through_a_slab() {
             let color = f64::from(material.base_color[channel] / lapidary_half_space::reflectance(gamma));
             let expected = color * irradiance / PI * f64::from(passed * lapidary_half_space::exit(1.0, gamma));
             let found = f64::from(with[channel]);
-            println!("{light:?}, radius {radius}, channel {channel}: {found:.5}, {expected:.5}, {:.5}", without[channel]);
+            println!(
+                "{light:?}, radius {radius}, channel {channel}: {found:.5}, {expected:.5}, {:.5}",
+                without[channel]
+            );
             // The filter takes in the ball around its far end, where the light falls aslant and its way is shorter: squares of
             // its width of half a mean free path, for two directions.
             let bent = 2.0 * (0.5 * f64::from(path[channel]) / radius).powi(2);

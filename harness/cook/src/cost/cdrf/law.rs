@@ -233,10 +233,8 @@ pub(super) fn table(report: &Report) -> Table {
 
 /// Shows the distances and times of each kind of shadow.
 pub(super) fn shadows_table(report: &Report) -> Table {
-    let mut table =
-        Table::of("cdrf_shadows", "Shadows, beside random walks", report.rungs(SHADOW)).column("shadows", |shadow| {
-            (*shadow).to_owned()
-        });
+    let mut table = Table::of("cdrf_shadows", "Shadows, beside random walks", report.rungs(SHADOW))
+        .column("shadows", |shadow| (*shadow).to_owned());
     for name in SCENES {
         table = table
             .column(name, |shadow| figure(report.value(shadow, name, SHADOW), 3))
