@@ -342,29 +342,31 @@ fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
-// The share of each colour's light that this bent surface can have taken in itself. On a sphere, light that arrives past
-// the terminator at a cosine -c has entered at most 2 c radii up the light. Where the light's way is longer by more than
-// twice the spread, another part of the body or another body took it.
-fn cdrf_own(rise: vec3f, cosine: f32, curvature: f32) -> vec3f {
-    let own = 2.0f * (abs(cosine) + cdrf_sigmas(curvature));
-    return clamp(vec3f(2.0f) - rise * abs(cdrf_finite(curvature)) / own, vec3f(0.0f), vec3f(1.0f));
+// How far up the light what a bent surface spreads to a point can have entered. On a sphere, light that arrives past the
+// terminator at a cosine -c has entered at most 2 c radii up the light, and it arrives hardly farther past it than three widths.
+fn cdrf_reach(cosine: f32, curvature: f32) -> vec3f {
+    let sigma = cdrf_sigmas(curvature);
+    let spread = 2.0f * (min(vec3f(abs(cosine)), 3.0f * sigma) + sigma);
+    return max(spread / max(abs(cdrf_finite(curvature)), 1e-12f), vec3f(1e-6f));
 }
 
-// Reflectance under a light that enters around the point or behind it, as its map says: what enters around is spread, and what
-// enters behind comes through the body as through a slab. The larger of both counts: the spread was fitted to whole
-// spheres, through which light comes as well. Where the light falls on the point itself its way is short, and nearly nothing
-// collides on it. Through a bent body light also gets lost sideways, as if its way were longer.
-fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, curvature: f32, shadow: TranslucentShadow, cosine_eye: f32) -> vec3f {
-    let cosine = max(cosines.x, max(cosines.y, cosines.z));
-    let spread = max(reflectance - (vec3f(1.0f) - shadow.visible) * max(cosines, vec3f(0.0f)), vec3f(0.0f));
+// Reflectance under a light that enters around the point or behind it, as its map says: what enters around is spread, as far
+// as no other part of a body has taken it, and what enters behind comes through the body as through a slab. The larger one
+// counts: the spread was fitted to whole spheres, through which light comes as well. Where the light falls on the point itself its
+// way is short, and nearly nothing collides on it. Through a bent body light also gets lost sideways, as if its way were longer.
+fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, shadow: TranslucentShadow, cosine_eye: f32) -> vec3f {
+    let falls = max(cosines, vec3f(0.0f));
+    let all = max(reflectance - (vec3f(1.0f) - shadow.visible) * falls, vec3f(0.0f));
+    let own = min(all, shadow.visible * falls);
+    let spread = own + (all - own) * shadow.near;
     let depth = CDRF_LOST_SIDEWAYS * shadow.way / max(material.free_path, vec3f(1e-12f));
     let passed = vec3f(
-        diffusion_slab(depth.x, material.law.gamma.x, material.milne),
-        diffusion_slab(depth.y, material.law.gamma.y, material.milne),
-        diffusion_slab(depth.z, material.law.gamma.z, material.milne),
+        diffusion_slab(depth.x, material.law.gamma.x, material.milne) * scattering_law_passed(shadow.cosine.x, material.law),
+        diffusion_slab(depth.y, material.law.gamma.y, material.milne) * scattering_law_passed(shadow.cosine.y, material.law),
+        diffusion_slab(depth.z, material.law.gamma.z, material.milne) * scattering_law_passed(shadow.cosine.z, material.law),
     );
     let seen = 0.31830987f * material.law.light * scattering_law_inside(cosine_eye, material.law);
-    return max(law * spread * cdrf_own(shadow.rise, cosine, curvature), shadow.cosine * passed * seen);
+    return max(law * spread, shadow.cosine * passed * seen);
 }
 
 // Irradiance from all around, per channel, by a normal.
@@ -399,12 +401,13 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         //+half_space }
         if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
             //+translucent_shadow {
-            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, material.free_path);
+            let reach = cdrf_reach(max(cosines.x, max(cosines.y, cosines.z)), curvature);
+            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, material.free_path, reach);
             var seen = vec3f(1.0f);
             if (EFFECT_HALF_SPACE) {
                 seen = law;
             }
-            reflectance = cdrf_translucent(reflectance, seen, cosines, curvature, shadow, dot(normal, toward_eye));
+            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, dot(normal, toward_eye));
             //+translucent_shadow }
         } else {  //+translucent_shadow
             if (EFFECT_SHADOW) {

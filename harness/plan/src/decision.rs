@@ -309,6 +309,11 @@ impl Case<'_> {
         if self.is_flat() {
             return off("curvature everywhere 0");
         }
+        if let (Rung::Diffuse(Reflectance::Drift), Some(path)) = (self.rung, super::thickness::free_path(self.material))
+        {
+            let from = if self.material.medium.is_some() { "" } else { " from sigma0 and base color" };
+            return on(format!("free path {}{from}", triple(path)));
+        }
         let from = if self.material.sigma0.is_some() { "" } else { " from scattering and absorption" };
         on(format!("sigma0 {}{from}", triple(sigma0)))
     }

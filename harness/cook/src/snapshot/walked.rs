@@ -25,10 +25,11 @@ pub struct WalkedReference {
 }
 
 /// All references by random walks.
-pub const WALKED: [WalkedReference; 10] = [
+pub const WALKED: [WalkedReference; 11] = [
     skin("skin", "Skin: spheres by random walks", 1024),
     skin("skin_bunny", "Skin: the bunny by random walks", 1024),
     skin("skin_ring", "Skin: the ring by random walks", 576),
+    skin("skin_head", "Skin: a head by random walks", 1024),
     stone("bunny", "Marble: the bunny by random walks", 4096),
     stone("dragon", "Veined jade: the dragon by random walks", 4096),
     stone("figure", "Marble: the figure by random walks", 4900),

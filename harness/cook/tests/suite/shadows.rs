@@ -321,6 +321,42 @@ fn light_through_a_clear_ball_is_colored_by_its_way_inside() {
     }
 }
 
+/// A caster that is far away takes as much light from a scattering body as one that is near, beside its shadow's edge as in it.
+#[test]
+fn a_shadow_on_scattering_matter_is_the_same_from_near_and_far() {
+    let skin = Scene::named("skin").expect("built in");
+    let slate = Scene::named("vitrine").expect("built in").objects[0].material.clone();
+    let medium = Medium {
+        scattering: Vec3::splat(0.25),
+        absorption: Vec3::splat(0.0025),
+        anisotropy: 0.0,
+        density: Density::Uniform,
+    };
+    let material = Material { medium: Some(medium), sigma0: None, ..skin.objects[0].material.clone() };
+    let camera = lapidary_scene::Camera::upright(Vec3::new(0.0, 0.0, 200.0), Vec3::ZERO, 0.7);
+    let sun = Light::Directional { toward: Vec3::Z, irradiance: Vec3::splat(PI as f32) };
+    let drawn = |away: f64| {
+        let ball = Object::new("ball", sphere(60.0, 256), material.clone());
+        // A box over a part of the ball, behind the camera.
+        let board = rounded_box(DVec3::new(60.0, 90.0, 2.0), 0.1, 2);
+        let board =
+            Object::new("board", board.placed(glam::DQuat::IDENTITY, DVec3::new(70.0, 0.0, away)), slate.clone());
+        let scene = Scene { objects: vec![ball, board], lights: vec![sun], camera, ..skin.clone() };
+        let settings = Settings { rung: Rung::ByMaterial, ..settings("drift") };
+        render::render(super::gpu(), &scene, &settings).expect("rendered").linear
+    };
+    let [near, far] = [210.0, 400.0].map(drawn);
+    let brightest = near.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+    let (mut dark, mut lit) = (0, 0);
+    for (near, far) in near.iter().zip(&far).filter(|(near, _)| near[3] > 0.99) {
+        assert!((near[0] - far[0]).abs() < 0.03 * brightest, "{near:?} {far:?}");
+        dark += usize::from(near[0] < 0.1 * brightest);
+        lit += usize::from(near[0] > 0.5 * brightest);
+    }
+    println!("{dark} dark, {lit} lit");
+    assert!(dark > 1000 && lit > 1000, "{dark} {lit}");
+}
+
 /// Through a ball of scattering matter, lit from behind, comes what the slab's closed form says of the way inside: at its
 /// middle, where the light's way is the diameter and enters head-on.
 #[test]

@@ -241,7 +241,8 @@ pub(super) fn shadows_table(report: &Report) -> Table {
             .column("ms", |shadow| figure(report.ms(shadow, name, SHADOW), 1));
     }
     table.note(format!(
-        "By the drift and the law of a half space: distance from the walks after the best exposure, and milliseconds of          {SIDE} × {SIDE} pixels, {}.",
+        "By the drift and the law of a half space: distance from the walks after the best exposure, and milliseconds of \
+         {SIDE} × {SIDE} pixels, {}.",
         report.run()
     ))
 }

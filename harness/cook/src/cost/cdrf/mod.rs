@@ -4,6 +4,7 @@
 
 pub mod error;
 mod frames;
+mod head;
 mod law;
 mod scenes;
 mod shader;
@@ -99,6 +100,7 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
     report.rows.extend(convolution.distance(lapidary_cdrf::spherical).rows(SPHERICAL, CIRCULAR));
     scenes::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks", done, total))?;
     law::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks, by law", done, total))?;
+    head::measure(gpu, options, &mut report, &mut |done, total| progress("a head beside walks", done, total))?;
     Ok(report)
 }
 

@@ -1,8 +1,8 @@
 //! The reflectance ladder's tables and its plot.
 
-use super::law;
 use super::scenes::{self, SCENES, SIDE};
 use super::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
+use super::{head, law};
 use crate::cost::plot::{self, Axis, COLORS, Corner, Dot, Marker, Plot, Series};
 use crate::cost::quality;
 use crate::cost::report::{Report, TIME, all_pairs, dominated};
@@ -34,6 +34,7 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
         walked(report),
         law::table(report),
         law::shadows_table(report),
+        head::table(report),
         law::zones_table(report),
         law::goals(report),
         goals(report),
