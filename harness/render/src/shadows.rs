@@ -39,30 +39,33 @@ impl Shadows {
     ) -> Result<Option<Self>, RenderError> {
         let on_surfaces = || parts.iter().filter(|part| matches!(part.rung, Rung::Diffuse(_)));
         let lit = || on_surfaces().flat_map(|part| &part.objects);
-        let is_entered =
-            |name: &String| lit().any(|drawn| drawn.name == *name && drawn.decisions.has(Effect::TranslucentShadow));
-        let opaque = casters(lighting, lit(), (Effect::Shadow, Casting::Opaque), &is_entered);
-        let stones = casters(lighting, lit(), (Effect::ColoredShadow, Casting::Clear), &|_| false);
-        let casting = opaque.iter().chain(&stones).map(|(_, body)| casting::bounds(body));
-        let Some(bounds) = casting.reduce(Bounds::joined) else { return Ok(None) };
+        let is_entered = |drawn: &&Drawn<'_>| drawn.decisions.has(Effect::TranslucentShadow);
+        // A body that light comes through is in its own way, whether or not it casts a shadow.
+        let entered: Vec<&Drawn<'_>> = lit().filter(is_entered).collect();
+        let mut opaque = casters(lighting, lit(), (Effect::Shadow, Casting::Opaque));
+        opaque.retain(|(name, _)| entered.iter().all(|drawn| drawn.name != *name));
+        let stones = casters(lighting, lit(), (Effect::ColoredShadow, Casting::Clear));
+        let casting = opaque.iter().chain(&stones).map(|(_, body)| *body);
+        let seen = casting.chain(entered.iter().map(|drawn| drawn.object)).map(casting::bounds);
+        let Some(bounds) = seen.reduce(Bounds::joined) else { return Ok(None) };
         let lights = &lighting.scene.lights;
         let views = light_views::views(lights, bounds, None);
         reflective_shadow_map::check_views(builder, &views)?;
         let side = if views.len() > lights.len() { SIDE_AROUND } else { SIDE };
         let side = side.min(builder.limits().max_texture_dimension_2d);
         let buffer = reflective_shadow_map::view_buffer(builder, &views);
-        let opaque = if opaque.is_empty() {
+        let opaque = if opaque.is_empty() && entered.is_empty() {
             None
         } else {
             let mut maps = ReflectiveShadowMaps::new(builder, &views, side, "for shadows")?;
+            for Drawn { name, object, .. } in entered {
+                let shape = lighting.shapes.of(builder, name, object)?;
+                let mesh = builder.of_object(name, |builder| MeshBuffers::of(builder, shape, object))?;
+                maps.add(builder, name, &mesh)?;
+            }
             for (name, body) in opaque {
                 let shape = lighting.shapes.of(builder, &name, body)?;
-                if is_entered(&name) {
-                    let mesh = builder.of_object(&name, |builder| MeshBuffers::of(builder, shape, body))?;
-                    maps.add(builder, &name, &mesh)?;
-                } else {
-                    maps.add_caster(builder, &name, &shape)?;
-                }
+                maps.add_caster(builder, &name, &shape)?;
             }
             Some(maps)
         };
@@ -89,37 +92,27 @@ impl Shadows {
     }
 }
 
-/// Returns the bodies of this kind that may keep light from those with this effect, and those that `is_wanted` names.
+/// Returns the bodies of this kind that may keep light from those with this effect.
 fn casters<'a, 'b: 'c, 'c>(
     lighting: &Lighting<'a>,
     lit: impl Iterator<Item = &'c Drawn<'b>>,
     (effect, kind): (Effect, Casting),
-    is_wanted: &dyn Fn(&String) -> bool,
 ) -> Vec<Caster<'a>> {
     let lit: Vec<_> = lit
         .filter(|drawn| drawn.decisions.has(effect))
         .map(|drawn| (drawn.object, casting::bounds(drawn.object)))
         .collect();
-    casters_or(lighting, &lit, kind, is_wanted)
+    casters_on(lighting, &lit, kind)
 }
 
 /// Returns the bodies of this kind that may keep light from some of `lit`, each given with its box.
 pub(super) fn casters_on<'a>(lighting: &Lighting<'a>, lit: &[(&Object, Bounds)], kind: Casting) -> Vec<Caster<'a>> {
-    casters_or(lighting, lit, kind, &|_| false)
-}
-
-fn casters_or<'a>(
-    lighting: &Lighting<'a>,
-    lit: &[(&Object, Bounds)],
-    kind: Casting,
-    is_wanted: &dyn Fn(&String) -> bool,
-) -> Vec<Caster<'a>> {
     let scene = lighting.scene;
     let casts = |body: &Object| {
         let caster = (body, casting::bounds(body));
         lit.iter().any(|receiver| casting::casts(caster, *receiver, &scene.lights))
     };
     let all = scene.objects.iter().zip(variant::names(scene));
-    let wanted = all.filter(|(body, name)| Casting::of(body) == kind && (casts(body) || is_wanted(name)));
+    let wanted = all.filter(|(body, _)| Casting::of(body) == kind && casts(body));
     wanted.map(|(body, name)| (name, body)).collect()
 }

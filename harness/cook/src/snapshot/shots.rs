@@ -165,8 +165,8 @@ pub const SHOTS: [Shot; 55] = [
     bright("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
     bright("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
     Shot {
-        paragraph: "One mesh five ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, the same with its shadows, and random \
-            walks. This is Lambert's law.",
+        paragraph: "One mesh five ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, the same \
+            with its shadows, and random walks. This is Lambert's law.",
         ..by_lights("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
     },
     Shot {
@@ -186,8 +186,8 @@ pub const SHOTS: [Shot; 55] = [
     },
     Shot {
         curvature: Curvature::Mean,
-        paragraph: "The reflectance alone with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
-            as this.",
+        paragraph: "The reflectance alone with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle \
+            of a mesh as coarse as this.",
         ..by_lights("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
     },
     Shot {

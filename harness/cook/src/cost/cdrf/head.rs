@@ -1,14 +1,13 @@
 //! A head of skin that is the same everywhere, drawn in the ways that one would use, beside random walks.
 
-use super::scenes::SIDE;
+use super::scenes::{self, SIDE, add_timed};
 use super::{CostError, Options, Report, Row};
 use crate::cost::table::{Table, figure};
-use crate::cost::timing::{self, Timed};
+use crate::cost::timing::Timed;
 use crate::exposure::{distance, exposed_distance};
 use crate::snapshot::WalkedReference;
 use crate::snapshot::frames::halved;
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::Settings;
 use lapidary_scene::Scene;
@@ -40,25 +39,14 @@ pub(super) fn measure(
     let (truth, scene) = (reference.picture(gpu)?.linear, Scene::named(SCENE)?);
     let (mut rows, mut timed) = (Vec::new(), Vec::new());
     for (name, reflectance, half_space) in WAYS {
-        let settings = Settings {
-            samples: 1,
-            rung: Rung::Diffuse(reflectance),
-            shadows: true,
-            half_space,
-            without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
-            ..Settings::of_size(SIDE, SIDE)
-        };
+        let settings = Settings { half_space, ..scenes::settings(reflectance, true) };
         let picture = halved(&render::render(gpu, &scene, &settings)?).linear;
-        rows.push((name, [exposed_distance(&picture, &truth), distance(&picture, &truth)]));
+        let values = [exposed_distance(&picture, &truth), distance(&picture, &truth)];
+        let row = |(measure, value)| Row::new(name, SCENE, measure, Some(value), "");
+        rows.push(MEASURES.into_iter().zip(values).map(row).collect());
         timed.push(Timed::new(&scene, settings));
     }
-    let timings = timing::time(gpu, &timed, options.rounds, progress)?;
-    for ((name, values), timing) in rows.into_iter().zip(timings) {
-        let ms = timing.map(|timing| timing.ms);
-        let row = |(measure, value)| Row::new(name, SCENE, measure, Some(value), "").timed(ms);
-        report.rows.extend(MEASURES.into_iter().zip(values).map(row));
-    }
-    Ok(())
+    add_timed(gpu, (rows, &timed), options, report, progress)
 }
 
 /// Shows the distances and times.

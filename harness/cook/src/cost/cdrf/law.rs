@@ -1,18 +1,18 @@
 //! What the law of a half space and the measured widths leave of the distance from the committed
 //! random walks, by how the light falls.
 
-use super::scenes::{SCENES, SIDE};
+use super::scenes::{self, SCENES, SIDE, add_timed};
 use super::{CostError, Options, Report, Row};
 use crate::cost::table::{Goal, Table, figure};
-use crate::cost::timing::{self, Timed};
+use crate::cost::timing::Timed;
 use crate::exposure::{best_exposure, distance, exposed_distance};
 use crate::snapshot::WalkedReference;
 use crate::snapshot::frames::halved;
 use glam::Vec3;
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects, Rung};
+use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_render::{Curvature, DiffuseOptions, Settings};
+use lapidary_render::Settings;
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Light, Scene};
 use std::f32::consts::PI;
@@ -72,16 +72,9 @@ fn zone_measure(zone: &str) -> String {
 
 /// Returns settings for one sample per pixel, the scene's lights alone, and per-vertex curvature.
 fn settings(reflectance: Reflectance, half_space: bool, sheen: bool) -> Settings {
-    let dark = Effects::of(&[Effect::Environment]);
-    Settings {
-        samples: 1,
-        rung: Rung::Diffuse(reflectance),
-        shadows: true,
-        half_space,
-        diffuse: DiffuseOptions { curvature: Curvature::Vertex, ..DiffuseOptions::default() },
-        without: if sheen { dark } else { dark.and(Effects::SHEEN) },
-        ..Settings::of_size(SIDE, SIDE)
-    }
+    let usual = scenes::settings(reflectance, true);
+    let without = if sheen { Effects::of(&[Effect::Environment]) } else { usual.without };
+    Settings { half_space, without, ..usual }
 }
 
 fn drawn(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<[f32; 4]>, CostError> {
@@ -187,9 +180,10 @@ pub(super) fn measure(
                 exposed_distance(&boundary, &refracted),
                 distance(&boundary, &refracted),
             ];
-            let mut found: Vec<_> = MEASURES.map(|measure| (look, *name, measure)).into_iter().zip(values).collect();
+            let row = |(measure, value)| Row::new(look, name, measure, Some(value), "");
+            let mut found: Vec<Row> = MEASURES.into_iter().zip(values).map(row).collect();
             if law {
-                found.push(((reflectance.name(), name, AS_DRAWN), values[0]));
+                found.push(Row::new(reflectance.name(), name, AS_DRAWN, Some(values[0]), ""));
             }
             rows.push(found);
             timed.push(Timed::new(scene, settings));
@@ -198,17 +192,11 @@ pub(super) fn measure(
             let usual = settings(Reflectance::Drift, true, false);
             let settings = Settings { shadows: cast, without: usual.without.and(Effects::of(without)), ..usual };
             let picture = drawn(gpu, scene, &settings)?;
-            rows.push(vec![((shadow, *name, SHADOW), exposed_distance(&picture, &truth))]);
+            rows.push(vec![Row::new(shadow, name, SHADOW, exposed_distance(&picture, &truth), "")]);
             timed.push(Timed::new(scene, settings));
         }
     }
-    let timings = timing::time(gpu, &timed, options.rounds, progress)?;
-    for (rows, timing) in rows.into_iter().zip(timings) {
-        let ms = timing.map(|timing| timing.ms);
-        let row = |((look, name, measure), value)| Row::new(look, name, measure, Some(value), "").timed(ms);
-        report.rows.extend(rows.into_iter().map(row));
-    }
-    Ok(())
+    add_timed(gpu, (rows, &timed), options, report, progress)
 }
 
 /// Shows the distances of whole pictures.

@@ -23,9 +23,9 @@ pub(super) fn view(scene: &str, shadows: bool) -> String {
     format!("{scene}, shadows {}", if shadows { "cast" } else { "none" })
 }
 
-/// Returns settings for one sample per pixel, no light but the scene's lights, and per-vertex
-/// curvature.
-fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
+/// Returns settings for one sample per pixel, no light but the scene's lights, no highlights, and
+/// per-vertex curvature.
+pub(super) fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
     Settings {
         samples: 1,
         rung: Rung::Diffuse(reflectance),
@@ -60,13 +60,27 @@ pub(super) fn measure(
                 let settings = settings(rung, shadows);
                 let picture = render::render(gpu, scene, &settings)?;
                 let walks = exposed_distance(&halved(&picture).linear, truth);
-                rows.push(Row::new(rung.name(), &view(name, shadows), "walks", walks, ""));
+                rows.push(vec![Row::new(rung.name(), &view(name, shadows), "walks", walks, "")]);
                 timed.push(Timed::new(scene, settings));
             }
         }
     }
-    let timings = timing::time(gpu, &timed, options.rounds, progress)?;
-    report.rows.extend(rows.into_iter().zip(timings).map(|(row, timing)| row.timed(timing.map(|timing| timing.ms))));
+    add_timed(gpu, (rows, &timed), options, report, progress)
+}
+
+/// Times pictures, and adds the rows of each with its time.
+pub(super) fn add_timed(
+    gpu: &Gpu,
+    (rows, timed): (Vec<Vec<Row>>, &[Timed<'_>]),
+    options: &Options<Reflectance>,
+    report: &mut Report,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(), CostError> {
+    let timings = timing::time(gpu, timed, options.rounds, progress)?;
+    for (rows, timing) in rows.into_iter().zip(timings) {
+        let ms = timing.map(|timing| timing.ms);
+        report.rows.extend(rows.into_iter().map(|row| row.timed(ms)));
+    }
     Ok(())
 }
 
