@@ -1,6 +1,6 @@
 // diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash b9961b39c28bdfe4
+// Version: 0.2.0, hash 2e1734a6be2e6d85
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,
@@ -231,7 +231,7 @@ fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f
 // Share of the light that comes through a slab, by diffusion: light falls on the near side along the normal,
 // and its first collisions count as one plane of sources at their mean depth, from which it diffuses to
 // Robin's boundaries on both sides. What passes without a collision is left out: it goes on straight.
-// Returns: flux through the far side, in [0, 0.4] for an index-matched surface; within 2 % of random walks
+// Returns: flux through the far side, in [0, 0.4] for an index-matched surface; within 3 % of random walks
 //   for an albedo of 0.99 or more up to 8 mean free paths, and 10 % for 0.9 up to 4.
 // Units: none; `thickness` and `milne` in mean free paths.
 // Domain: any thickness, clamped to [0, 1e6]; any gamma, clamped to [1e-6, 1]; any milne, clamped to [0.5, 20].
