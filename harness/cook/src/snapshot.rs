@@ -4,10 +4,12 @@
 pub mod beside_walks;
 mod comparison;
 pub mod frames;
+mod label;
 mod shots;
 pub mod strip;
 mod walked;
 
+use beside_walks::BesideWalks;
 pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear};
 pub(crate) use comparison::{flip, flip_of_rgb};
 use lapidary_gpu::Gpu;
@@ -23,7 +25,7 @@ pub const PNG_SIDE: u32 = 512;
 /// Width and height in pixels of the EXR with linear radiance.
 pub const EXR_SIDE: u32 = 256;
 /// Size limit of a committed file in bytes.
-pub const LARGEST_FILE: u64 = 512 * 1024;
+pub const LARGEST_FILE: u64 = 1024 * 1024;
 /// A committed picture: a PNG for viewing and an EXR with linear radiance.
 #[derive(Clone, Copy, Debug)]
 pub enum Committed {
@@ -31,17 +33,18 @@ pub enum Committed {
     Shot(&'static Shot),
     /// Translucent stone in motion.
     Strip,
-    /// Translucent stone compared with random walks.
-    BesideWalks,
+    /// Scattering bodies compared with random walks.
+    BesideWalks(&'static BesideWalks),
 }
 
 impl Committed {
     /// Number of committed pictures.
-    pub const COUNT: usize = SHOTS.len() + 2;
+    pub const COUNT: usize = SHOTS.len() + 1 + beside_walks::ALL.len();
 
     /// Returns each picture once.
     pub fn all() -> impl Iterator<Item = Self> {
-        SHOTS.iter().map(Self::Shot).chain([Self::Strip, Self::BesideWalks])
+        let compared = beside_walks::ALL.into_iter().map(Self::BesideWalks);
+        SHOTS.iter().map(Self::Shot).chain([Self::Strip]).chain(compared)
     }
 
     /// Returns the common name of its files.
@@ -50,7 +53,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => shot.name,
             Self::Strip => strip::NAME,
-            Self::BesideWalks => beside_walks::NAME,
+            Self::BesideWalks(of) => of.name,
         }
     }
 
@@ -59,7 +62,8 @@ impl Committed {
     pub fn folder(self) -> PathBuf {
         match self {
             Self::Shot(shot) => shot.folder(),
-            Self::Strip | Self::BesideWalks => folder("optical_path"),
+            Self::Strip => folder("optical_path"),
+            Self::BesideWalks(of) => folder(of.technique),
         }
     }
 
@@ -71,7 +75,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => render_shot(gpu, shot),
             Self::Strip => strip::render(gpu),
-            Self::BesideWalks => beside_walks::render(gpu),
+            Self::BesideWalks(of) => of.render(gpu),
         }
     }
 
@@ -82,7 +86,7 @@ impl Committed {
     pub fn render_linear(self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
         match self {
             Self::Shot(shot) => Ok(render::render(gpu, &shot.open()?, &shot.settings(EXR_SIDE))?),
-            Self::Strip | Self::BesideWalks => self.render(gpu).map(|[_, linear]| linear),
+            Self::Strip | Self::BesideWalks(_) => self.render(gpu).map(|[_, linear]| linear),
         }
     }
 }
@@ -127,6 +131,9 @@ pub enum SnapshotError {
         /// Width and height of the rendered picture in pixels.
         expected: (u32, u32),
     },
+    /// The figures for a picture's labels are missing or damaged.
+    #[error("the figures for the labels: {0}")]
+    Record(String),
     /// A pixel is NaN or infinite.
     #[error(
         "{what}: pixel ({column}, {row}) is {value:?}; find out why, such a picture is never a reference nor like one"

@@ -43,10 +43,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         });
         bar.inc(1);
     }
-    for (committed, title, paragraph) in [
-        (Committed::Strip, strip::TITLE, strip::PARAGRAPH),
-        (Committed::BesideWalks, beside_walks::TITLE, beside_walks::PARAGRAPH),
-    ] {
+    let strip = (Committed::Strip, strip::TITLE, strip::PARAGRAPH);
+    let compared = beside_walks::ALL.into_iter().map(|of| (Committed::BesideWalks(of), of.title, of.paragraph));
+    for (committed, title, paragraph) in [strip].into_iter().chain(compared) {
         let name = committed.name();
         bar.set_message(name);
         let path = rendered.path().join(format!("{name}.png"));

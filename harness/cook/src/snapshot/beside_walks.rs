@@ -1,8 +1,11 @@
-//! Translucent stone compared with random walks, and the difference.
+//! Scattering bodies compared with random walks: a row for each scene with each way of drawing it, the walks,
+//! and what is between the last way and the walks.
 
 use super::frames::{halved, side_by_side};
+use super::label::label;
 use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
+use crate::cost::Report;
 use crate::exposure::best_exposure;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
@@ -10,37 +13,117 @@ use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
 
-/// Name of the picture's files.
-pub const NAME: &str = "beside_walks";
-/// Title in the gallery.
-pub const TITLE: &str = "Translucent stone beside random walks";
-/// Description in the gallery.
-pub const PARAGRAPH: &str = "Lambert's law with the shadows that bodies cast, light along the cheapest ways, random walks, and what is between these two: the absolute difference of the linear radiance, shown \
-    as bright as the pictures. Both sides of a comparison have the one exposure that brings them nearest. Thin parts glow, thick ones are dark.";
-/// The rungs shown before the walks; the difference of the last one is shown after them.
-pub const RUNGS: [&str; 2] = ["lambert-shadowed", "godunov-128"];
-/// Number of pictures in a row.
-pub const COLUMNS: u32 = 4;
+/// A comparison of several scenes.
+#[derive(Debug)]
+pub struct BesideWalks {
+    /// Name of the picture's files.
+    pub name: &'static str,
+    /// Title in the gallery.
+    pub title: &'static str,
+    /// Description in the gallery.
+    pub paragraph: &'static str,
+    /// The technique whose folder holds the files.
+    pub technique: &'static str,
+    /// The scenes, row by row.
+    scenes: &'static [&'static str],
+    /// The ways of drawing, column by column; the difference of the last one is shown after the walks.
+    looks: &'static [Look],
+    /// Name of the ladder, its committed report, and the measure whose distances and times the labels give.
+    record: (&'static str, &'static str, &'static str),
+}
 
-/// Renders a row for each scene: encoded, and at half that size for its linear radiance.
-///
-/// # Errors
-/// Returns an error if a reference or a scene does not load or if the device fails.
-pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
-    let mut frames = Vec::new();
-    for reference in WalkedReference::of("optical_path") {
-        let walks = reference.picture(gpu)?;
-        let scene = Scene::named(reference.scene)?;
-        for rung in RUNGS {
-            frames.push(exposed(gpu, &scene, &settings(rung), &walks)?);
+/// A way of drawing.
+#[derive(Debug)]
+struct Look {
+    /// The rung.
+    rung: &'static str,
+    /// Whether the law of a half space is on.
+    law: bool,
+    /// The label.
+    label: &'static str,
+    /// Name of the report's row.
+    row: &'static str,
+}
+
+/// Translucent stone and wax.
+pub const STONE: BesideWalks = BesideWalks {
+    name: "beside_walks",
+    title: "Translucent stone beside random walks",
+    paragraph: "Lambert's law with the shadows that bodies cast, light along the cheapest ways, light that diffuses, random walks, and what is \
+        between these last two: the absolute difference of the linear radiance, shown as bright as the pictures. Each picture has the one \
+        exposure that brings it nearest to the walks. Below each name: the distance from the walks, and the time of 512 by 512 pixels.",
+    technique: "optical_path",
+    scenes: &["bunny", "dragon", "figure", "wax_bunny"],
+    looks: &[plain("lambert-shadowed"), plain("godunov-128"), plain("diffusion-128")],
+    record: ("translucent", include_str!("../../../../docs/measurements/lavapipe/translucent.json"), "walks"),
+};
+
+/// A head of skin that is the same everywhere.
+pub const HEAD: BesideWalks = BesideWalks {
+    name: "head_beside_walks",
+    title: "A head beside random walks",
+    paragraph: "Lambert's law with shadows, a blur of the irradiance in the scan's texture, the reflectance by curvature with its shadows, random \
+        walks, and what is between these last two. Each picture has the one exposure that brings it nearest to the walks. Below each \
+        name: the distance from the walks, and the time of 512 by 512 pixels.",
+    technique: "cdrf",
+    scenes: &["skin_head"],
+    looks: &[
+        Look { row: "`lambert-shadowed`", ..plain("lambert-shadowed") },
+        Look { row: "`blur --with shadow`", label: "blur, shadow", ..plain("blur") },
+        Look { row: "`drift --with half_space,shadow`", label: "drift, law, shadow", law: true, ..plain("drift") },
+    ],
+    record: ("cdrf", include_str!("../../../../docs/measurements/lavapipe/cdrf.json"), "head"),
+};
+
+/// All comparisons.
+pub const ALL: [&BesideWalks; 2] = [&STONE, &HEAD];
+
+/// Returns the look of a rung alone.
+const fn plain(rung: &'static str) -> Look {
+    Look { rung, law: false, label: rung, row: rung }
+}
+
+impl BesideWalks {
+    /// Renders the picture: encoded, and at half that size for its linear radiance.
+    ///
+    /// # Errors
+    /// Returns an error if a reference, a scene or the report does not load, or if the device fails.
+    pub fn render(&self, gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
+        let (ladder, json, measure) = self.record;
+        let report = Report::from_json(ladder, json).map_err(|error| SnapshotError::Record(error.to_string()))?;
+        let mut frames = Vec::new();
+        for scene_name in self.scenes {
+            let Some(reference) = WalkedReference::of_scene(scene_name) else { continue };
+            let walks = reference.picture(gpu)?;
+            let scene = Scene::named(scene_name)?;
+            let mut difference = walks.clone();
+            for look in self.looks {
+                let mut frame = exposed(gpu, &scene, &look.settings(), &walks)?;
+                difference = apart(gpu, &frame, &walks)?;
+                let figure = |value: Option<f64>, decimals: usize| {
+                    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+                };
+                let distance = figure(report.value(look.row, scene_name, measure), 2);
+                let ms = figure(report.ms(look.row, scene_name, measure), 0);
+                label(&mut frame, &[look.label, &format!("{distance}, {ms} ms")]);
+                frames.push(frame);
+            }
+            let mut walks = walks;
+            label(&mut walks, &["random walks", &format!("{} a pixel", reference.walks)]);
+            label(&mut difference, &["difference"]);
+            frames.extend([walks, difference]);
         }
-        let paths = &frames[frames.len() - 1];
-        let difference = difference(gpu, paths, &walks)?;
-        frames.extend([walks, difference]);
+        let seen = side_by_side(&frames, self.looks.len() as u32 + 2);
+        let half = halved(&seen);
+        Ok([seen, half])
     }
-    let seen = side_by_side(&frames, COLUMNS);
-    let half = halved(&seen);
-    Ok([seen, half])
+}
+
+impl Look {
+    fn settings(&self) -> Settings {
+        let shadows = self.law || self.rung == "blur";
+        Settings { half_space: self.law, shadows, ..settings(self.rung) }
+    }
 }
 
 /// Returns the settings of a rung, limited to the effects that the walks account for.
@@ -66,13 +149,33 @@ fn exposed(gpu: &Gpu, scene: &Scene, settings: &Settings, truth: &Picture) -> Re
     Ok(picture)
 }
 
-fn difference(gpu: &Gpu, one: &Picture, other: &Picture) -> Result<Picture, SnapshotError> {
+/// Returns the absolute difference of two pictures' radiance.
+fn apart(gpu: &Gpu, one: &Picture, other: &Picture) -> Result<Picture, SnapshotError> {
     let apart = |(one, other): (&[f32; 4], &[f32; 4])| {
         let [red, green, blue] = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
         [red, green, blue, one[3].max(other[3])]
     };
     let linear = one.linear.iter().zip(&other.linear).map(apart).collect();
     let mut picture = Picture { linear, notes: Vec::new(), ..one.clone() };
-    render::encode(gpu, &settings(RUNGS[0]), &mut picture)?;
+    render::encode(gpu, &settings("lambert"), &mut picture)?;
     Ok(picture)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every label has its figures: the rows are there, timed.
+    #[test]
+    fn every_look_is_in_its_record() {
+        for of in ALL {
+            let (ladder, json, measure) = of.record;
+            let report = Report::from_json(ladder, json).expect("a report");
+            for (look, scene) in of.looks.iter().flat_map(|look| of.scenes.iter().map(move |scene| (look, scene))) {
+                let found = (report.value(look.row, scene, measure), report.ms(look.row, scene, measure));
+                assert!(found.0.is_some() && found.1.is_some(), "{scene}, {}: {found:?}", look.row);
+                assert!(WalkedReference::of_scene(scene).is_some());
+            }
+        }
+    }
 }
