@@ -380,6 +380,7 @@ fn cdrf_around(around: HarmonicsAround, sigma: vec3f) -> vec3f {
 // Irradiance, each light's part spread by its reflectance and seen by the law of the matter.
 fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, toward_eye: vec3f) -> vec3f {
     let normal = normals.coarse;
+    let cosine_eye = mesh_cosine_to_eye(normal, toward_eye, surface.position_x, surface.position_y);  //+half_space
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
@@ -396,7 +397,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         //+half_space {
         var law = vec3f(1.0f);
         if (EFFECT_HALF_SPACE) {
-            law = scattering_law_of_light(dot(normal, toward_eye), cdrf_entered(reflectance, curvature), material.law);
+            law = scattering_law_of_light(cosine_eye, cdrf_entered(reflectance, curvature), material.law);
         }
         //+half_space }
         if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
@@ -407,7 +408,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             if (EFFECT_HALF_SPACE) {
                 seen = law;
             }
-            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, dot(normal, toward_eye));
+            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, cosine_eye);
             //+translucent_shadow }
         } else {  //+translucent_shadow
             if (EFFECT_SHADOW) {
@@ -445,7 +446,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             irradiance = cdrf_around(around, sigma);
         }  //+normal_texture
         if (EFFECT_HALF_SPACE) {
-            irradiance *= scattering_law_around(dot(normal, toward_eye), material.law);
+            irradiance *= scattering_law_around(cosine_eye, material.law);
         }
         received += irradiance;
     }

@@ -461,7 +461,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
     let toward_eye = normalize(view.eye - input.position);
     let squared = dot(input.normal, input.normal);
     let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
-    let cosine_outside = clamp(dot(normal, toward_eye), 0.02f, 1.0f);
+    let cosine_outside = clamp(mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position)), 0.02f, 1.0f);
     let albedo = (1.0f - body.gamma) * (1.0f + body.gamma);
     // Inside of the surface.
     var cosine_eye = cosine_outside;

@@ -133,6 +133,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
     let toward_eye = normalize(view.eye - input.position);
     let squared = dot(input.normal, input.normal);
     let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
+    let cosine_eye = mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position));  //+half_space
 
     var received = vec3f(0.0f);
     var highlights = vec3f(0.0f);  //+microfacet
@@ -151,7 +152,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
             counted = light;
             var part = lit * cosine * arrival.irradiance;
             if (EFFECT_HALF_SPACE) {
-                part *= scattering_law_of_light(dot(normal, toward_eye), vec3f(cosine), body.law);
+                part *= scattering_law_of_light(cosine_eye, vec3f(cosine), body.law);
             }
             received += part;
             if (EFFECT_MICROFACET) {
@@ -162,7 +163,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
     if (EFFECT_OPTICAL_PATH) {
         var along = body.largest * optical_path_along(input.position);
         if (EFFECT_HALF_SPACE) {
-            along *= scattering_law_inside(dot(normal, toward_eye), body.law);
+            along *= scattering_law_inside(cosine_eye, body.law);
         }
         // Light that falls on the point itself takes one of the paths, of length 0.
         received = max(received, along);
@@ -171,7 +172,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
         let weights = cdrf_harmonic_weights(0.0f);
         var irradiance = harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
         if (EFFECT_HALF_SPACE) {
-            irradiance *= scattering_law_around(dot(normal, toward_eye), body.law);
+            irradiance *= scattering_law_around(cosine_eye, body.law);
         }
         received += irradiance;
     }

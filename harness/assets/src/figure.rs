@@ -10,13 +10,19 @@ use lapidary_scene::Mesh;
 /// Returns the statue, 117 mm high.
 #[must_use]
 pub fn mesh() -> Mesh {
-    surface(&field, &grid())
+    surface(&field, &grid(1.5))
 }
 
-/// Returns a grid with cells of 1.3 mm at the face, wider on the wings, and more than twice as wide
-/// at the plinth's foot.
-fn grid() -> Grid {
-    let scale = |height: f64| 1.0 + 1.5 * (1.0 - height / 82.0).clamp(0.0, 1.0);
+/// Returns the statue with a robe and a plinth that bear looking at from near.
+#[must_use]
+pub fn fine_mesh() -> Mesh {
+    surface(&field, &grid(0.25))
+}
+
+/// Returns a grid with cells of 1.3 mm at the face, wider on the wings, and wider by the share `coarser` at the
+/// plinth's foot.
+fn grid(coarser: f64) -> Grid {
+    let scale = |height: f64| 1.0 + coarser * (1.0 - height / 82.0).clamp(0.0, 1.0);
     let stretch = |aside: f64| 1.0 + 0.25 * ((aside - 9.0) / 8.0).clamp(0.0, 1.0);
     Grid::graded(dvec2(0.0, -1.0), dvec2(48.0, 20.0), [-4.0, 122.0], 1.28, scale, stretch)
 }

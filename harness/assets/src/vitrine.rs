@@ -4,7 +4,7 @@
 use crate::{candle, figure};
 use glam::{DQuat, DVec3};
 use lapidary_scene::cuts::{BrilliantParameters, round_brilliant};
-use lapidary_scene::surfaces::rounded_box;
+use lapidary_scene::surfaces::{rounded_box, sphere};
 use lapidary_scene::{Averaging, Bounds, Mesh, Scene, SceneError};
 
 /// Girdle radii of the stones.
@@ -15,22 +15,55 @@ const CHAIN: f32 = 18.0;
 /// Gap between the table and the bodies on it, so that no two surfaces coincide.
 const GAP: f64 = 0.02;
 
-/// Returns the table, the diamond, the ruby, the candle, the figure and the chain.
+/// Radius of the jade ball.
+pub(crate) const BALL: f64 = 9.5;
+/// Half width of the stand's rods, where its post stands, how high its arm is, and where the chain hangs.
+const ROD: f64 = 1.6;
+const POST: DVec3 = DVec3::new(88.0, 0.0, -30.0);
+const ARM: f64 = 137.5;
+const HOOK: DVec3 = DVec3::new(62.0, 131.0, 6.0);
+
+/// Returns the table, the diamond, the ruby, the candle, the figure, the chain, the ball and the stand's three parts.
 pub(crate) fn meshes() -> Result<Vec<Mesh>, SceneError> {
     let (half, rounding) = (DVec3::new(150.0, 7.0, 100.0), 2.5);
     let table = rounded_box(half, rounding, 2).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
     let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?.to_mesh(Averaging::default());
     let chain = Scene::named("prism_chain")?.objects.into_iter().map(|object| object.mesh.scaled(CHAIN));
-    // Its uppermost link extends past the picture's edge.
-    let chain = chain.map(|mesh| mesh.placed(DQuat::IDENTITY, DVec3::new(62.0, 131.0, 6.0)));
+    let chain = chain.map(|mesh| mesh.placed(DQuat::IDENTITY, HOOK));
     let bodies = [
         table,
         standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
         standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
         standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
-        standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
+        standing(&figure::fine_mesh(), turned(8.0), [10.0, -28.0]),
     ];
-    Ok(bodies.into_iter().chain(chain).collect())
+    let ball = standing(&plain(sphere(BALL, 64)), turned(0.0), [13.0, 61.0]);
+    Ok(bodies.into_iter().chain(chain).chain([ball]).chain(stand()).collect())
+}
+
+/// Returns the stand's foot, its post, and the arm from which the chain hangs. Each is a body of its own, since stones see
+/// bodies by their bounds, and bounds around all three would be mostly air.
+fn stand() -> [Mesh; 3] {
+    let rod = |from: DVec3, to: DVec3| {
+        let turn = DQuat::from_rotation_arc(DVec3::Y, (to - from).normalize());
+        let half = DVec3::new(ROD, 0.5 * from.distance(to), ROD);
+        plain(rounded_box(half, 0.9 * ROD, 4)).placed(turn, 0.5 * (from + to))
+    };
+    let foot = DVec3::new(11.0, 2.0, 11.0);
+    let over = HOOK.with_y(ARM);
+    let mut arm = rod(POST.with_y(ARM), over);
+    // A hair above the uppermost link.
+    arm.append(&rod(over + ROD * DVec3::Y, HOOK + 10.0 * GAP * DVec3::Y));
+    [
+        standing(&plain(rounded_box(foot, 1.5, 4)), turned(0.0), [POST.x, POST.z]),
+        rod(POST + 2.0 * (foot.y + GAP) * DVec3::Y, POST.with_y(ARM - ROD - GAP)),
+        arm,
+    ]
+}
+
+/// Returns the mesh without texture coordinates: nothing on it is blurred.
+fn plain(mesh: Mesh) -> Mesh {
+    Mesh { uvs: Vec::new(), ..mesh }
 }
 
 /// Rotation about the vertical, in degrees from +z towards +x.

@@ -20,7 +20,7 @@ pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
 
-/// Width and height in pixels of the PNG for viewing.
+/// Width and height in pixels of a usual PNG for viewing.
 pub const PNG_SIDE: u32 = 512;
 /// Width and height in pixels of the EXR with linear radiance.
 pub const EXR_SIDE: u32 = 256;
@@ -171,13 +171,13 @@ pub enum SnapshotError {
 pub fn render_shot(gpu: &Gpu, shot: &Shot) -> Result<[Picture; 2], SnapshotError> {
     let scene = shot.open()?;
     let render = |side| render::render(gpu, &scene, &shot.settings(side));
-    Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
+    Ok([render(shot.side)?, render(EXR_SIDE)?])
 }
 
 /// Renders another scene in place of the shot's; `source` replaces the text of the recipe.
 pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Result<[Picture; 2], SnapshotError> {
     let render = |side| render::render_with(gpu, scene, &shot.settings(side), source);
-    Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
+    Ok([render(shot.side)?, render(EXR_SIDE)?])
 }
 
 /// Makes new pictures the references called `name`.

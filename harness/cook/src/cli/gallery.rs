@@ -3,7 +3,7 @@
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_cook::gallery::{self, Picture, Site};
-use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
+use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, SHOTS, WALKED, beside_walks, strip};
 use lapidary_render::file;
 use lapidary_scene::BUILT_IN;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             file: path,
             paragraph: if shot.paragraph.is_empty() { of_scene } else { shot.paragraph }.to_owned(),
             command: shot.command(),
-            size: (PNG_SIDE, PNG_SIDE),
+            size: (shot.side, shot.side),
         });
         bar.inc(1);
     }

@@ -1,7 +1,7 @@
 //! Pictures of a single scene each, and the commands that render them.
 
-use super::folder;
-use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};
+use super::{PNG_SIDE, folder};
+use lapidary_plan::{Decisions, Effect, Effects, Outside, Quality, Rung};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, MOST_SAMPLES, Settings};
 use lapidary_scene::{SAMPLES, Scene, SceneError};
 use std::path::PathBuf;
@@ -36,6 +36,10 @@ pub struct Shot {
     pub exposure: f32,
     /// The curvature that spreads the light.
     pub curvature: Curvature,
+    /// Width and height of the PNG in pixels.
+    pub side: u32,
+    /// The quality that chooses rungs by material.
+    pub quality: Quality,
     /// Samples along each side of a pixel.
     pub samples: u32,
     /// Description in the gallery; if empty, the scene's own description.
@@ -51,11 +55,19 @@ const BY_MATERIAL: &str = "by-material";
 /// All committed pictures of a single scene.
 pub const SHOTS: [Shot; 55] = [
     Shot {
-        paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
-            without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
-            `./cook plan vitrine` says why, and what follows: nothing is compiled, bound or run that no body calls for.",
-        exposure: 0.5,
-        ..fine(shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", BY_MATERIAL))
+        paragraph: "Every technique at once, each body by what its material calls for: a table and a stand that are opaque, a diamond with \
+            dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
+            figure, and a chain of clear glass. `./cook plan vitrine --quality best` says why, and what follows: nothing is compiled, bound \
+            or run that no body calls for.",
+        exposure: 0.25,
+        side: 1024,
+        quality: Quality::Best,
+        ..fine(shot(
+            "vitrine",
+            "A vitrine: ten bodies, each by the technique that it calls for",
+            "vitrine",
+            BY_MATERIAL,
+        ))
     },
     Shot {
         paragraph: "The exact stone: each ray inside finds its facet by a map of all 73, to eight hits. The default for closed, convex \
@@ -233,6 +245,8 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         with_law: false,
         exposure: 1.0,
         curvature: Curvature::Vertex,
+        side: PNG_SIDE,
+        quality: Quality::Good,
         samples: SAMPLES,
         paragraph: "",
     }
@@ -301,6 +315,7 @@ impl Shot {
             exposure: self.exposure,
             diffuse: DiffuseOptions { curvature: self.curvature, ..DiffuseOptions::default() },
             samples: self.samples,
+            quality: self.quality,
             ..Settings::of_size(side, side)
         }
     }
@@ -353,6 +368,10 @@ impl Shot {
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
         let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
         let choices = format!("{from}{rung}{centre}{footprint}{outside}{law}{light}{curvature}{exposure}{samples}");
+        let quality =
+            if self.quality == Quality::default() { String::new() } else { format!(" --quality {}", self.quality) };
+        let size = if self.side == PNG_SIDE { String::new() } else { format!(" --size {0}x{0}", self.side) };
+        let choices = format!("{quality}{choices}{size}");
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

@@ -57,7 +57,7 @@ fn bright_edges_are_no_staircases() {
     let scenes = [
         ("brilliant", "convex-8+tracker", 1.0),
         ("chandelier", "proxy-2+tracker", 1.0),
-        ("vitrine", "by-material", 0.5),
+        ("vitrine", "by-material", 0.25),
     ];
     for (name, rung, exposure) in super::sampled(scenes, 3) {
         let scene = Scene::named(name).expect("built in");

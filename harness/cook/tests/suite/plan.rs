@@ -506,12 +506,29 @@ fn parts(scene: &Scene) -> Parts {
 #[test]
 fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
     let vitrine = named("vitrine");
+    // Bodies that come and go together: the two that share the light's maps, whose size follows from all of them, and the
+    // parts of the stand.
+    fn group(object: &Object) -> &str {
+        match object.name.as_str() {
+            "candle" | "figure" => "light goes through",
+            "foot" | "post" | "arm" => "stand",
+            other => other,
+        }
+    }
+    let groups: Vec<&str> = vitrine.objects.iter().map(group).fold(Vec::new(), |mut groups, group| {
+        if !groups.contains(&group) {
+            groups.push(group);
+        }
+        groups
+    });
     let subset = |kept: usize| {
-        let objects = vitrine.objects.iter().enumerate().filter(|(place, _)| kept >> place & 1 == 1);
-        Scene { objects: objects.map(|(_, object)| object.clone()).collect(), ..vitrine.clone() }
+        let is_kept = |object: &&Object| {
+            groups.iter().position(|of| *of == group(object)).is_some_and(|place| kept >> place & 1 == 1)
+        };
+        Scene { objects: vitrine.objects.iter().filter(is_kept).cloned().collect(), ..vitrine.clone() }
     };
-    let count = vitrine.objects.len();
-    assert!(count >= 6, "{count} objects");
+    let count = groups.len();
+    assert!(count >= 7, "{groups:?}");
     let alone: Vec<Parts> = (0..count).map(|place| parts(&subset(1 << place))).collect();
     let shared = parts(&subset(0));
     for kept in 0..1 << count {
@@ -525,9 +542,9 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
         assert_eq!((resources, pipelines, steps), expected, "subset {kept:b}");
     }
     // Each object also has a resource of its own.
-    for (object, parts) in vitrine.objects.iter().zip(&alone) {
+    for object in &vitrine.objects {
         let own = |name: &str| name.starts_with(&format!("{}/", object.name));
-        assert!(parts.0.iter().any(|resource| own(&resource.name)), "{}", object.name);
+        assert!(alone.iter().any(|parts| parts.0.iter().any(|resource| own(&resource.name))), "{}", object.name);
     }
 }
 

@@ -222,7 +222,7 @@ fn another_drivers_samples_pass() {
         camera.target = camera.eye + turn * (camera.target - camera.eye);
         camera.up = turn * camera.up;
         let copy = copy_of(&shot.folder());
-        let pictures = [snapshot::PNG_SIDE, snapshot::EXR_SIDE]
+        let pictures = [shot.side, snapshot::EXR_SIDE]
             .map(|side| render::render(super::gpu(), &scene, &shot.settings(side)).expect("rendered"));
         let comparison = snapshot::compare(shot.name, &pictures, copy.path()).expect("compared");
         println!("{:28} {comparison:?}", shot.name);

@@ -5,15 +5,18 @@ use lapidary_render::Settings;
 use lapidary_render::pixel::Viewer;
 use lapidary_scene::{Object, Scene};
 
-/// The rule decides from the candle's data in the file and from measurements of the figure.
+/// The rule decides from the ball's thickness, and from measurements of the candle and the figure.
 #[test]
 fn each_body_calls_for_a_technique_of_its_own() {
     let scene = Scene::named("vitrine").expect("built in");
     let settings = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(4, 3) };
     let decisions = Decisions::all(&scene, &settings.request());
     let rungs: Vec<String> = decisions.iter().map(|decisions| decisions.rung.to_string()).collect();
-    let stone = "walk-8+tracker";
-    assert_eq!(rungs, ["lambert", stone, stone, "drift", "diffusion-64", "bvh-8+tracker"]);
+    let (stone, through) = ("walk-8+tracker", "diffusion-64");
+    assert_eq!(
+        rungs,
+        ["lambert", stone, stone, through, through, "bvh-8+tracker", "drift", "lambert", "lambert", "lambert"]
+    );
 }
 
 /// Uses a 4:3 picture, with a ray through every tenth pixel of 640 by 480.
@@ -37,7 +40,7 @@ fn the_camera_sees_every_body() {
     }
     let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
     println!("{shares:?}");
-    assert!(shares.iter().all(|(_, share)| *share > 0.012), "{shares:?}");
+    assert!(shares.iter().all(|(_, share)| *share > 0.002), "{shares:?}");
     // The table extends beyond the picture.
-    assert_eq!(at_an_edge, [true, false, false, false, false, false]);
+    assert!(at_an_edge.iter().enumerate().all(|(place, at_an_edge)| *at_an_edge == (place == 0)), "{at_an_edge:?}");
 }

@@ -67,8 +67,14 @@ pub(super) fn clear_glass() -> Material {
 
 /// Slate with an even, honed surface.
 pub(super) fn slate() -> Material {
-    let base_color = Vec3::new(0.03, 0.033, 0.04);
+    let base_color = Vec3::new(0.072, 0.08, 0.092);
     Material { name: "slate".to_owned(), base_color, roughness: 0.35, ..Material::standard() }
+}
+
+/// Dark patina on bronze: opaque, with a highlight of its own.
+pub(super) fn bronze() -> Material {
+    let base_color = Vec3::new(0.11, 0.06, 0.028);
+    Material { name: "bronze".to_owned(), base_color, roughness: 0.3, ..Material::standard() }
 }
 
 /// Scales a material to a stone with this girdle radius.

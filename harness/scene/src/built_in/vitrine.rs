@@ -2,9 +2,11 @@
 //! 0.
 
 use glam::Vec3;
+use std::f32::consts::PI;
 
 use super::{VERTICAL_FOV, materials, stone, translucent};
-use crate::{Camera, Dispersion, Light, Material, Object, Scene, SceneError, gltf};
+use crate::{Camera, Density, Dispersion, Light, Material, Medium, Object, Scene, SceneError, gltf};
+use lapidary_veins::VeinsPattern;
 
 /// The meshes, made by the program in `harness/assets/`.
 const VITRINE: &[u8] = include_bytes!("../../../assets/vitrine.glb");
@@ -14,8 +16,8 @@ const DIAMOND: f32 = 17.0;
 const RUBY: f32 = 13.5;
 /// Scale of the chain relative to the built-in one: a link is 18 mm wide.
 const CHAIN: f32 = 18.0;
-/// Thickness of the candle, all but its rim.
-const CANDLE: f32 = 30.0;
+/// Diameter of the jade ball.
+const BALL: f32 = 19.0;
 
 /// Builds the scene.
 pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
@@ -26,27 +28,52 @@ pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
 }
 
 /// Returns names and materials, in the order of the file.
-fn bodies() -> [(&'static str, Material); 6] {
+fn bodies() -> [(&'static str, Material); 10] {
     let ruby = Material { dispersion: Dispersion::None, ..materials::ruby() };
-    let wax = Material { thickness: CANDLE, ..translucent::material("wax") };
     [
         ("table", materials::slate()),
         ("diamond", materials::sized(materials::diamond(), DIAMOND)),
         ("ruby", materials::sized(ruby, RUBY)),
-        ("candle", wax),
-        ("figure", stone::marble()),
+        ("candle", paraffin()),
+        ("figure", veined_marble()),
         ("prism_chain", materials::sized(materials::clear_glass(), CHAIN)),
+        ("ball", Material { thickness: BALL, roughness: 0.25, ..translucent::material("jade") }),
+        ("foot", materials::bronze()),
+        ("post", materials::bronze()),
+        ("arm", materials::bronze()),
     ]
 }
 
+/// Paraffin wax, clearer than bleached wax. Its coefficients are chosen by eye.
+fn paraffin() -> Material {
+    let medium = Medium::isotropic(Vec3::new(0.36, 0.36, 0.35), Vec3::new(0.0008, 0.0022, 0.008));
+    translucent::scattering("paraffin", medium, Vec3::new(0.9, 0.84, 0.72), (1.44, 0.35))
+}
+
+/// Marble with cloudy veins some 20 mm apart, which darken it where light comes through.
+fn veined_marble() -> Material {
+    let marble = stone::marble();
+    let veined = |medium| Medium { density: Density::Veins(VEINS), ..medium };
+    Material { name: "veined marble".to_owned(), medium: marble.medium.clone().map(veined), ..marble }
+}
+
+/// The marble's veins.
+const VEINS: VeinsPattern =
+    VeinsPattern { frequency: 0.06, width: 0.06, least: 0.5, greatest: 4.0, octaves: 4, seed: 3 };
+
+/// A low sun behind the bodies, which shines through wax and marble, and a weak warm lamp before them.
 fn lights() -> Vec<Light> {
-    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 1_000.0 * Vec3::new(1.0, 0.8, 0.6) };
-    vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 3.0), lamp]
+    let sun = Vec3::new(-0.7, 0.5, -0.8).normalize();
+    let lamp = Vec3::new(60.0, 170.0, 150.0);
+    vec![
+        Light::Directional { toward: sun, irradiance: 9.0 * PI * Vec3::new(1.0, 0.93, 0.84) },
+        Light::Point { position: lamp, intensity: 20_000.0 * Vec3::new(1.0, 0.8, 0.6) },
+    ]
 }
 
 /// A camera that suits pictures of 4:3 and square ones.
 fn camera() -> Camera {
-    Camera::upright(Vec3::new(15.3, 126.2, 349.5), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
+    Camera::upright(Vec3::new(17.0, 133.0, 374.0), Vec3::new(10.0, 56.5, 0.0), VERTICAL_FOV)
 }
 
 #[cfg(test)]
