@@ -560,3 +560,26 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
         }
     }
 }
+
+/// Between a silhouette and the far edge of its triangle, interpolated normals face away from the eye, and through a
+/// boundary nothing comes at grazing angles. Of a coarse ball under an even sky hardly a pixel is darker than a third of its
+/// middle: those of triangles that are seen nearly edge-on. By the normal's own cosine a rim is black.
+#[test]
+fn a_coarse_mesh_has_no_black_rim() {
+    for rung in ["drift", "diffusion-32"] {
+        let mut scene = ball(10.0, Vec3::splat(2.0));
+        scene.objects[0].mesh = sphere(10.0, 12);
+        scene.objects[0].material.ior = 1.5;
+        scene.objects[0].material.roughness = 0.4;
+        // A light for the boundary's sake, too weak to be seen.
+        scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(1e-6) }];
+        let white = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
+        let settings = Settings { half_space: true, without: Effects::NONE, environment: white, ..settings(rung) };
+        let picture = draw(&scene, &settings);
+        let covered: Vec<f32> = picture.linear.iter().filter(|pixel| pixel[3] > 0.99).map(|pixel| pixel[1]).collect();
+        let middle = picture.linear[(SIDE * SIDE / 2 + SIDE / 2) as usize][1];
+        let dark = covered.iter().filter(|green| **green < 0.33 * middle).count() as f64 / covered.len() as f64;
+        println!("{rung}: {dark:.4} of {} pixels are dark", covered.len());
+        assert!(covered.len() > 5000 && dark < 0.003, "{rung}: {dark}");
+    }
+}
