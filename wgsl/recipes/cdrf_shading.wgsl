@@ -359,6 +359,9 @@ fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, shadow: Tran
     let all = max(reflectance - (vec3f(1.0f) - shadow.visible) * falls, vec3f(0.0f));
     let own = min(all, shadow.visible * falls);
     let spread = own + (all - own) * shadow.near;
+    if (SHADOW_FORM != SHADOW_FORM_THROUGH) {
+        return law * spread;
+    }
     let depth = CDRF_LOST_SIDEWAYS * shadow.way / max(material.free_path, vec3f(1e-12f));
     let passed = vec3f(
         diffusion_slab(depth.x, material.law.gamma.x, material.milne) * scattering_law_passed(shadow.cosine.x, material.law),

@@ -20,7 +20,9 @@ pub(crate) const BALL: f64 = 9.5;
 /// Half width of the stand's rods, where its post stands, how high its arm is, and where the chain hangs.
 const ROD: f64 = 1.6;
 const POST: DVec3 = DVec3::new(88.0, 0.0, -30.0);
-const ARM: f64 = 137.5;
+const ARM: f64 = 138.5;
+/// Radius of the eye at the hook's end.
+const EYE: f64 = 2.0;
 const HOOK: DVec3 = DVec3::new(62.0, 131.0, 6.0);
 
 /// Returns the table, the diamond, the ruby, the candle, the figure, the chain, the ball and the stand's three parts.
@@ -37,7 +39,7 @@ pub(crate) fn meshes() -> Result<Vec<Mesh>, SceneError> {
         standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
         standing(&figure::fine_mesh(), turned(8.0), [10.0, -28.0]),
     ];
-    let ball = standing(&plain(sphere(BALL, 64)), turned(0.0), [13.0, 61.0]);
+    let ball = standing(&plain(sphere(BALL, 64)), turned(0.0), [64.0, 66.0]);
     Ok(bodies.into_iter().chain(chain).chain([ball]).chain(stand()).collect())
 }
 
@@ -47,13 +49,16 @@ fn stand() -> [Mesh; 3] {
     let rod = |from: DVec3, to: DVec3| {
         let turn = DQuat::from_rotation_arc(DVec3::Y, (to - from).normalize());
         let half = DVec3::new(ROD, 0.5 * from.distance(to), ROD);
-        plain(rounded_box(half, 0.9 * ROD, 4)).placed(turn, 0.5 * (from + to))
+        plain(rounded_box(half, 0.3 * ROD, 3)).placed(turn, 0.5 * (from + to))
     };
     let foot = DVec3::new(11.0, 2.0, 11.0);
     let over = HOOK.with_y(ARM);
-    let mut arm = rod(POST.with_y(ARM), over);
-    // A hair above the uppermost link.
-    arm.append(&rod(over + ROD * DVec3::Y, HOOK + 10.0 * GAP * DVec3::Y));
+    let along = (POST.with_y(ARM) - over).normalize();
+    let mut arm = rod(POST.with_y(ARM) + 2.0 * ROD * along, over - ROD * along);
+    // It reaches over the post, and its hook ends a hair above the uppermost link.
+    let eye = HOOK + (EYE + 5.0 * GAP) * DVec3::Y;
+    arm.append(&rod(over, eye));
+    arm.append(&plain(sphere(EYE, 32)).placed(DQuat::IDENTITY, eye));
     [
         standing(&plain(rounded_box(foot, 1.5, 4)), turned(0.0), [POST.x, POST.z]),
         rod(POST + 2.0 * (foot.y + GAP) * DVec3::Y, POST.with_y(ARM - ROD - GAP)),

@@ -72,7 +72,7 @@ use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral::{self, Lost, Rendering, Window};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Environment, LARGEST_SIDE, Material, Object, Scene};
-pub use reflectance::Curvature;
+pub use reflectance::{Curvature, ShadowForm};
 pub use settings::{
     DiffuseOptions, DiffusionOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, SCREEN_STEPS,
     Settings, WALKS, WalkOptions,

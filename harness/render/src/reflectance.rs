@@ -39,6 +39,41 @@ pub enum Curvature {
     Vertex,
 }
 
+/// How far the shadows of bodies that scatter follow their light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShadowForm {
+    /// Edges of one width for all colours.
+    Soft,
+    /// Edges of each colour's width.
+    Colors,
+    /// These, and light that comes through thin parts.
+    #[default]
+    Through,
+}
+
+impl ShadowForm {
+    /// All forms, the cheapest first.
+    pub const ALL: [Self; 3] = [Self::Soft, Self::Colors, Self::Through];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Soft => "soft",
+            Self::Colors => "colors",
+            Self::Through => "through",
+        }
+    }
+
+    /// Returns `SHADOW_FORM` of the recipe.
+    pub(super) fn form(self) -> u32 {
+        match self {
+            Self::Soft => 0,
+            Self::Colors => 1,
+            Self::Through => 2,
+        }
+    }
+}
+
 impl Curvature {
     /// All curvatures.
     pub const ALL: [Self; 4] = [Self::Mean, Self::Towards, Self::Naive, Self::Vertex];

@@ -1,6 +1,6 @@
 //! Settings of a picture, and the options of each technique that draws it.
 
-use crate::Curvature;
+use crate::{Curvature, ShadowForm};
 use lapidary_plan::{Effects, Outside, Quality, Request, Rung, Scattering};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
@@ -112,13 +112,15 @@ impl Default for GemOptions {
 pub struct DiffuseOptions {
     /// Curvature that spreads the light.
     pub curvature: Curvature,
+    /// How far shadows follow the light inside, where they are those of scattering matter.
+    pub shadows: ShadowForm,
     /// Whether the environment's light is summed per vertex; per pixel otherwise.
     pub environment_at_vertices: bool,
 }
 
 impl Default for DiffuseOptions {
     fn default() -> Self {
-        Self { curvature: Curvature::Vertex, environment_at_vertices: true }
+        Self { curvature: Curvature::Vertex, shadows: ShadowForm::default(), environment_at_vertices: true }
     }
 }
 

@@ -95,6 +95,7 @@ pub(crate) fn constants(
         ("CDRF_FORM", f64::from(form(reflectance).unwrap_or_default())),
         ("SPREAD_FORM", f64::from(spread(reflectance))),
         ("CURVATURE_FORM", f64::from(settings.diffuse.curvature.form())),
+        ("SHADOW_FORM", f64::from(settings.diffuse.shadows.form())),
         ("ENVIRONMENT_AT_VERTICES", f64::from(u8::from(settings.diffuse.environment_at_vertices))),
     ]);
     constants

@@ -11,6 +11,11 @@
 // body that scatters.
 override EFFECT_TRANSLUCENT_SHADOW: bool = false;
 
+// Edges of one width for all colours, edges of each colour's width, or these and the light that comes through the body.
+override SHADOW_FORM: u32 = 2u;
+const SHADOW_FORM_SOFT: u32 = 0u;
+const SHADOW_FORM_THROUGH: u32 = 2u;
+
 // Width of the filter's Gaussian in mean free paths.
 const TRANSLUCENT_SHADOW_WIDTH: f32 = 0.5f;
 // The least width of a colour, of the largest one: the taps of the largest have to serve it.
@@ -43,6 +48,7 @@ fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: ve
     // Taps are more than a texel apart.
     let widest = clamp(path, texel, TRANSLUCENT_SHADOW_WIDEST * size * texel);
     let widths = clamp(TRANSLUCENT_SHADOW_WIDTH * free_path, vec3f(TRANSLUCENT_SHADOW_NARROWEST * widest), vec3f(widest));
+    let mean = (widths.x + widths.y + widths.z) / 3.0f;
     let spacing = TRANSLUCENT_SHADOW_SPACING * widest / texel;
     let middle = vec2f(0.5f * size);
     let nearest = round((place - middle) / spacing);
@@ -58,7 +64,10 @@ fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: ve
             let across = (at - place) * texel;
             let height = reflective_shadow_map_height(seen.xyz, position, normal);
             let way = dot(seen.xyz - position, toward_light);
-            let weight = exp(-0.5f * dot(across, across) / (widths * widths));
+            var weight = vec3f(exp(-0.5f * dot(across, across) / (mean * mean)));
+            if (SHADOW_FORM != SHADOW_FORM_SOFT) {
+                weight = exp(-0.5f * dot(across, across) / (widths * widths));
+            }
             weights += weight;
             sum.visible += weight * select(0.0f, 1.0f, height <= texel + TRANSLUCENT_SHADOW_SLOPE * length(across));
             sum.near += weight * clamp(vec3f(2.0f) - way / reach, vec3f(0.0f), vec3f(1.0f));

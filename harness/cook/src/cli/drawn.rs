@@ -5,9 +5,11 @@ use super::asked::{Asked, refuse_without_meaning};
 use super::{Failure, number};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
-use lapidary_render::{Curvature, DiffuseOptions, DiffusionOptions, GemOptions, OpticalPathOptions, Settings};
-use lapidary_scene::Scene;
+use lapidary_render::{
+    Curvature, DiffuseOptions, DiffusionOptions, GemOptions, OpticalPathOptions, Settings, ShadowForm,
+};
 use lapidary_scene::nearest::suggest;
+use lapidary_scene::{Object, Scene};
 
 #[derive(clap::Args)]
 pub(super) struct Drawn {
@@ -84,6 +86,10 @@ struct Diffuse {
     /// (|dN| / |dP|).
     #[arg(long, value_name = "FORM", value_parser = parse_curvature)]
     curvature: Option<Curvature>,
+    /// Shadows on matter that scatters: soft edges, edges of each colour's width (colors), or these and
+    /// light through thin parts (through, the default). `--without translucent_shadow` leaves hard ones.
+    #[arg(long, value_name = "FORM", value_parser = parse_shadows)]
+    shadows: Option<ShadowForm>,
 }
 
 /// Options for translucent scattering bodies.
@@ -136,6 +142,12 @@ fn parse_curvature(text: &str) -> Result<Curvature, String> {
     let names = Curvature::ALL.map(Curvature::name);
     let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
     found.ok_or_else(|| format!("no such curvature{}", suggest(text, &names)))
+}
+
+fn parse_shadows(text: &str) -> Result<ShadowForm, String> {
+    let names = ShadowForm::ALL.map(ShadowForm::name);
+    let found = ShadowForm::ALL.into_iter().find(|form| form.name() == text);
+    found.ok_or_else(|| format!("no such form of shadows{}", suggest(text, &names)))
 }
 
 fn parse_positive(text: &str) -> Result<f32, String> {
@@ -218,12 +230,17 @@ impl Drawn {
         }
         let (asked, notes) = self.asked.settings(&scene)?;
         let curvature = self.diffuse.as_ref().and_then(|of| of.curvature);
+        let shadows = self.diffuse.as_ref().and_then(|of| of.shadows);
         let extinction_scale = self.optical_path.as_ref().and_then(|of| of.extinction_scale);
         let settings = Settings {
             exposure: self.exposure,
             samples: self.samples,
             gem: self.gem.as_ref().map_or(asked.gem, Gem::options),
-            diffuse: curvature.map_or(asked.diffuse, |curvature| DiffuseOptions { curvature, ..asked.diffuse }),
+            diffuse: DiffuseOptions {
+                curvature: curvature.unwrap_or(asked.diffuse.curvature),
+                shadows: shadows.unwrap_or(asked.diffuse.shadows),
+                ..asked.diffuse
+            },
             diffusion: self.diffusion.as_ref().map_or(asked.diffusion, |of| DiffusionOptions {
                 cycles: of.cycles.unwrap_or(asked.diffusion.cycles),
                 residual: of.residual,
@@ -236,7 +253,7 @@ impl Drawn {
         let own = [
             Given {
                 technique: "curvature",
-                flags: given([("--curvature", curvature.is_some())]),
+                flags: given([("--curvature", curvature.is_some()), ("--shadows", shadows.is_some())]),
                 draws: |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
             },
             Given {
@@ -252,6 +269,15 @@ impl Drawn {
                 draws: |rung, _| matches!(rung, Rung::Diffusion(_)),
             },
         ];
+        let softens =
+            |object: &Object| Decisions::of(object, &scene, &settings.request()).has(Effect::TranslucentShadow);
+        if shadows.is_some() && !scene.objects.iter().any(softens) {
+            return Err(Failure(format!(
+                "scene `{}`: --shadows has no meaning, since no matter there softens shadows: what would is drawn by its curvature with \
+                 half_space and shadow; leave it out, or add `--with half_space,shadow`",
+                scene.name
+            )));
+        }
         let gem = self.gem.iter().flat_map(Gem::given);
         refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;
         if let Some(outside) = settings.gem.outside

@@ -59,7 +59,7 @@ pub const SHOTS: [Shot; 55] = [
             dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
             figure, and a chain of clear glass. `./cook plan vitrine --quality best` says why, and what follows: nothing is compiled, bound \
             or run that no body calls for.",
-        exposure: 0.25,
+        exposure: 0.3,
         side: 1024,
         quality: Quality::Best,
         ..fine(shot(

@@ -88,6 +88,12 @@ const RENDER: &[Row] = &[
     ("bunny --with cdrf,optical_path --out {}/out.png", One, &["by one of them"]),
     ("bunny --with fog --out {}/out.png", Usage, &["--with", "shadow"]),
     ("bunny --deferred --out {}/out.png", One, &["nothing there is drawn by the gem recipes"]),
+    (
+        "skin --rung drift --shadows soft --out {}/out.png",
+        One,
+        &["--shadows has no meaning", "--with half_space,shadow"],
+    ),
+    ("skin_bunny --shadows hard --out {}/out.png", Usage, &["--shadows", "no such form of shadows"]),
     ("vitrine --deferred --out {}/out.png", One, &["only clear stones", "leave --deferred out"]),
     ("bunny --footprint --out {}/out.png", One, &["nothing there is drawn by the gem recipes"]),
     ("prism_chain --footprint --out {}/out.png", One, &["rung by-material", "leave --footprint out"]),

@@ -87,6 +87,33 @@ fn two_scenes_and_a_light_that_were_looked_at_once() {
     }
 }
 
+/// Matter that scatters forwards is drawn as its similar one, which scatters evenly and less: by g, (1 - g) times as much.
+/// Deep inside that is exact; what is scattered a few times keeps its direction, so that walks lie three times as far from the
+/// picture as those through the similar matter.
+#[test]
+fn forward_scattering_is_drawn_by_its_similar_matter() {
+    let (side, g) = (32, 0.8);
+    let even = Medium::isotropic(Vec3::new(0.8, 1.2, 2.0), Vec3::new(0.004, 0.02, 0.1));
+    let forward = Medium { scattering: even.scattering / (1.0 - g), anisotropy: g, ..even.clone() };
+    let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
+    let scene_of = |medium: &Medium| scene_of(sphere(8.0, 96), medium.clone(), lights.clone(), (85.0, 10.0));
+    let [found, similar] = [&forward, &even].map(|medium| drawn(&scene_of(medium), "diffusion-64", 2 * side));
+    let differ = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
+    let most = found.linear.iter().zip(&similar.linear).map(differ).fold(0.0, f32::max);
+    let brightest = similar.linear.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+    assert!(most < 1e-4 * brightest, "{most} of {brightest}");
+    let [evenly, forwards] = [&even, &forward].map(|medium| {
+        let walks = WalkOptions { walks: 1024, from: Origin::Lights, ..WalkOptions::default() };
+        let without = Effects::of(&[Effect::Environment]);
+        let rung = "reference".parse().expect("a rung");
+        let settings = Settings { rung, without, walks, ..Settings::of_size(side, side) };
+        let truth = render::render(super::gpu(), &scene_of(medium), &settings).expect("walked").linear;
+        distance(&halved(&found).linear, &truth)
+    });
+    println!("distance from walks that scatter evenly {evenly:.3}, forwards {forwards:.3}");
+    assert!(evenly < 0.08 && (0.15..0.25).contains(&forwards), "{evenly} {forwards}");
+}
+
 /// The goals of docs/diffusion.md: the share of the distance of Lambert's law with shadows, at the
 /// best exposures and at exposure 1.
 #[test]

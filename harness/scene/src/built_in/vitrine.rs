@@ -59,11 +59,11 @@ fn veined_marble() -> Material {
 
 /// The marble's veins.
 const VEINS: VeinsPattern =
-    VeinsPattern { frequency: 0.06, width: 0.06, least: 0.5, greatest: 4.0, octaves: 4, seed: 3 };
+    VeinsPattern { frequency: 0.055, width: 0.12, least: 0.5, greatest: 3.0, octaves: 2, seed: 8 };
 
 /// A low sun behind the bodies, which shines through wax and marble, and a weak warm lamp before them.
 fn lights() -> Vec<Light> {
-    let sun = Vec3::new(-0.7, 0.5, -0.8).normalize();
+    let sun = Vec3::new(-0.66, 0.55, -0.8).normalize();
     let lamp = Vec3::new(60.0, 170.0, 150.0);
     vec![
         Light::Directional { toward: sun, irradiance: 9.0 * PI * Vec3::new(1.0, 0.93, 0.84) },
@@ -73,7 +73,7 @@ fn lights() -> Vec<Light> {
 
 /// A camera that suits pictures of 4:3 and square ones.
 fn camera() -> Camera {
-    Camera::upright(Vec3::new(17.0, 133.0, 374.0), Vec3::new(10.0, 56.5, 0.0), VERTICAL_FOV)
+    Camera::upright(Vec3::new(12.0, 133.0, 376.0), Vec3::new(12.0, 57.0, 0.0), VERTICAL_FOV)
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use glam::Vec3;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_render::Settings;
+use lapidary_render::{DiffuseOptions, Settings, ShadowForm};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Light, Scene};
 use std::f32::consts::PI;
@@ -40,9 +40,15 @@ const GOAL: &str = "drift, half space";
 /// Largest share of the distance of Lambert's law with shadows that is a goal.
 const MOST: f64 = 0.5;
 
-/// The shadows of the compared pictures by the goal's reflectance: name, whether there are any, and what is left out.
-const SHADOWS: [(&str, bool, &[Effect]); 3] =
-    [("none", false, &[]), ("hard", true, &[Effect::TranslucentShadow]), ("translucent", true, &[])];
+/// The shadows of the compared pictures by the goal's reflectance: name, whether there are any, what is left out, and
+/// the form of what is not.
+const SHADOWS: [(&str, bool, &[Effect], ShadowForm); 5] = [
+    ("none", false, &[], ShadowForm::Through),
+    ("hard", true, &[Effect::TranslucentShadow], ShadowForm::Through),
+    ("soft", true, &[], ShadowForm::Soft),
+    ("colors", true, &[], ShadowForm::Colors),
+    ("through", true, &[], ShadowForm::Through),
+];
 /// The measure of these pictures.
 const SHADOW: &str = "shadow";
 
@@ -188,9 +194,14 @@ pub(super) fn measure(
             rows.push(found);
             timed.push(Timed::new(scene, settings));
         }
-        for (shadow, cast, without) in SHADOWS {
+        for (shadow, cast, without, form) in SHADOWS {
             let usual = settings(Reflectance::Drift, true, false);
-            let settings = Settings { shadows: cast, without: usual.without.and(Effects::of(without)), ..usual };
+            let settings = Settings {
+                shadows: cast,
+                without: usual.without.and(Effects::of(without)),
+                diffuse: DiffuseOptions { shadows: form, ..usual.diffuse },
+                ..usual
+            };
             let picture = drawn(gpu, scene, &settings)?;
             rows.push(vec![Row::new(shadow, name, SHADOW, exposed_distance(&picture, &truth), "")]);
             timed.push(Timed::new(scene, settings));

@@ -40,11 +40,12 @@ fn passes(module: &Module) -> Vec<Vec<String>> {
 }
 
 /// Values of overrides that enumerate forms.
-const FORMS: [(&str, &[f64]); 5] = [
+const FORMS: [(&str, &[f64]); 6] = [
     ("DISPERSION_FORM", &[0.0, 1.0, 2.0, 3.0]),
     ("CDRF_FORM", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("SPREAD_FORM", &[0.0, 1.0, 2.0]),
     ("CURVATURE_FORM", &[0.0, 1.0, 2.0, 3.0]),
+    ("SHADOW_FORM", &[0.0, 1.0, 2.0]),
     ("OPTICAL_PATH_STENCIL", &[6.0, 18.0, 26.0]),
 ];
 
