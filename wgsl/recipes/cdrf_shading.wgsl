@@ -23,6 +23,8 @@ override SPREAD_FORM: u32 = 0u;
 // light, 2 mean by the usual |dN| / |dP|. From the vertices: 3 mean. Derivatives need no data, but
 // jump between the triangles of a coarse mesh; curvatures given at the vertices do not.
 override CURVATURE_FORM: u32 = 0u;
+// A second lobe of the highlights, as skin has. Called for by extras.lapidary.secondLobe, where there are highlights.
+override EFFECT_SECOND_LOBE: bool = false;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
 // texture_irradiance and texture_diffusion.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;
@@ -71,6 +73,9 @@ struct CdrfMaterial {
     // diffusion_milne of the index at the boundary.
     milne: f32,
     law: ScatteringLaw,
+    // The same width of a second lobe of the highlights, and its share of them.
+    second_alpha: f32,
+    second_weight: f32,
     base_color_place: TexturePlace,
     normal_place: TexturePlace,
 }
@@ -411,7 +416,8 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             if (EFFECT_HALF_SPACE) {
                 seen = law;
             }
-            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, cosine_eye);
+            let facing = mesh_cosine_to_eye(normal, toward_eye, surface.position_x, surface.position_y);
+            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, facing);
             //+translucent_shadow }
         } else {  //+translucent_shadow
             if (EFFECT_SHADOW) {
@@ -462,6 +468,10 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
         var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.alpha);
+        if (EFFECT_SECOND_LOBE) {
+            let second = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.second_alpha);
+            highlight = mix(highlight, second, material.second_weight);
+        }
         if (EFFECT_SHADOW) {
             highlight *= cdrf_visible(index, dot(normals.sharp, arrival.direction), position, normals.coarse);
         }

@@ -155,6 +155,7 @@ impl Case<'_> {
             Effect::NormalTexture => self.image(TextureSlot::Normal),
             Effect::VertexColor => self.vertex_color(),
             Effect::Microfacet => self.microfacet(),
+            Effect::SecondLobe => self.second_lobe(),
             Effect::Reflection => self.reflection(),
             Effect::Spot => self.spot(),
         }
@@ -593,6 +594,16 @@ impl Case<'_> {
             return off("no lights");
         }
         on(format!("roughness {}, ior {}", short(roughness), short(ior)))
+    }
+
+    fn second_lobe(&self) -> Answer {
+        let Some(lobe) = self.material.second_lobe else {
+            return off("no secondLobe");
+        };
+        if let (false, reason) = self.microfacet() {
+            return off(format!("no highlights: {reason}"));
+        }
+        self.drawn_by_rung(format!("secondLobe of roughness {}, weight {}", short(lobe.roughness), short(lobe.weight)))
     }
 
     fn reflection(&self) -> Answer {

@@ -95,6 +95,8 @@ effects! {
     VertexColor = "vertex_color", "EFFECT_VERTEX_COLOR";
     /// Highlights of the lights on a rough surface.
     Microfacet = "microfacet", "EFFECT_MICROFACET";
+    /// A second width of the highlights, mixed with the first.
+    SecondLobe = "second_lobe", "EFFECT_SECOND_LOBE";
     /// Reflection of the environment in a polished surface.
     Reflection = "reflection", "EFFECT_REFLECTION";
     /// Lights that shine into a cone.
@@ -134,7 +136,7 @@ impl Effects {
     /// The empty set.
     pub const NONE: Self = Self(0);
     /// The effects of a scattering body's surface that reflects light, from outside and from inside.
-    pub const SHEEN: Self = Self::of(&[Effect::Dielectric, Effect::Microfacet, Effect::Reflection]);
+    pub const SHEEN: Self = Self::of(&[Effect::Dielectric, Effect::Microfacet, Effect::SecondLobe, Effect::Reflection]);
 
     /// Returns the set of the given effects.
     #[must_use]

@@ -17,7 +17,7 @@ use glam::{UVec2, Vec2, Vec3};
 use lapidary_plan::{Decisions, Rung, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
 use lapidary_scene::solver::{Format, Reflectance};
-use lapidary_scene::{Material, Object};
+use lapidary_scene::{Lobe, Material, Object};
 
 /// The lighting of the objects, and the shadows; `None` if there are none.
 pub(super) type Light<'a> = (&'a Lighting<'a>, Option<&'a Shadows>);
@@ -177,6 +177,8 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record = record.with("free_path", safe(thickness::free_path(material)));
     let record = record.with("milne", lapidary_diffusion::milne(ScatteringLaw::index_of(material, decisions)));
     let record = record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record));
+    let lobe = material.second_lobe.unwrap_or(Lobe { roughness: 0.0, weight: 0.0 });
+    let record = record.with("second_alpha", lobe.roughness * lobe.roughness).with("second_weight", lobe.weight);
     let record =
         record.within("base_color_place", |record| textures::place(record, material.base_color_texture.as_ref()));
     record.within("normal_place", |record| textures::place(record, material.normal_texture.as_ref()))

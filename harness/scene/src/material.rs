@@ -57,6 +57,8 @@ pub struct Material {
     /// Roughness of the surface, 0 (a mirror) to 1, as in glTF: its square is the width of the
     /// distribution of microfacet slopes.
     pub roughness: f32,
+    /// A second distribution of slopes, mixed with that of `roughness`; `None` if there is one only.
+    pub second_lobe: Option<Lobe>,
     /// Whether both sides of the surface are meant to be seen, as glTF's `doubleSided`. A solid
     /// shows only one.
     pub double_sided: bool,
@@ -69,6 +71,23 @@ pub struct Material {
     /// Technique that draws the body; `None` if the material does not define it. Only a scattering
     /// body has one.
     pub solver: Option<Solver>,
+}
+
+/// A lobe of a highlight that has two, as skin's has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobe {
+    /// Roughness, above 0 and at most 1.
+    pub roughness: f32,
+    /// Share of the facets that have it, above 0 and below 1.
+    pub weight: f32,
+}
+
+impl Lobe {
+    /// Whether roughness and weight are in range.
+    #[must_use]
+    pub fn is_sound(self) -> bool {
+        self.roughness > 0.0 && self.roughness <= 1.0 && self.weight > 0.0 && self.weight < 1.0
+    }
 }
 
 /// How a refractive index depends on the wavelength.
@@ -106,6 +125,7 @@ impl Material {
             thickness: 0.0,
             thickness_texture: None,
             roughness: 1.0,
+            second_lobe: None,
             double_sided: false,
             sigma0: None,
             medium: None,
@@ -149,6 +169,10 @@ impl Material {
             Some("its material's thickness is not finite and at least 0; mend it")
         } else if !(0.0..=1.0).contains(&self.roughness) {
             Some("its material's roughness is not between 0 and 1; mend it")
+        } else if !self.second_lobe.is_none_or(Lobe::is_sound) {
+            Some(
+                "its material's second lobe has a roughness outside 0 to 1 or a weight that is not between them; mend it",
+            )
         } else if !self.sigma0.is_none_or(is_length) {
             Some("its material's sigma0 is not finite and at least 0; mend it")
         } else if self.solver.is_some() && !self.scatters() {

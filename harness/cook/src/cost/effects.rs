@@ -201,8 +201,15 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             name: "head",
             scene: coloured,
             settings: settings("accurate"),
-            effects: &[Effect::Cdrf, Effect::BaseColorTexture, Effect::NormalTexture, Effect::VertexColor],
-            stands_on: &[],
+            effects: &[
+                Effect::Cdrf,
+                Effect::BaseColorTexture,
+                Effect::NormalTexture,
+                Effect::VertexColor,
+                Effect::Microfacet,
+                Effect::SecondLobe,
+            ],
+            stands_on: &[(Effect::SecondLobe, Effect::Microfacet)],
         },
         Case {
             name: "vitrine, table and ruby",

@@ -12,7 +12,7 @@ use lapidary_render::{Curvature, DiffuseOptions, Picture, RenderError, Settings}
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Environment, Light, Material, Object, Scene};
+use lapidary_scene::{Environment, Light, Lobe, Material, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 const SIDE: u32 = 160;
@@ -559,6 +559,29 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
             assert!(accurate < lambert, "{}: {accurate} {lambert}", reference.scene);
         }
     }
+}
+
+/// Two lobes are the mean of the pictures with either, by weight, and so keep the energy that they keep.
+#[test]
+fn a_highlight_of_two_lobes_is_the_mean_of_both() {
+    let mut scene = ball(10.0, Vec3::splat(2.0));
+    let of = |roughness: f32, second: Option<Lobe>, scene: &mut Scene| {
+        scene.objects[0].material.roughness = roughness;
+        scene.objects[0].material.second_lobe = second;
+        draw(scene, &Settings { without: Effects::of(&[Effect::Environment]), ..settings("accurate") }).linear
+    };
+    let [wide, narrow] = [0.5, 0.2].map(|roughness| of(roughness, None, &mut scene));
+    let both = of(0.5, Some(Lobe { roughness: 0.2, weight: 0.3 }), &mut scene);
+    let mut most = 0.0f32;
+    for ((wide, narrow), both) in wide.iter().zip(&narrow).zip(&both) {
+        for channel in 0..3 {
+            let mean = 0.7 * wide[channel] + 0.3 * narrow[channel];
+            // Sums of three, of which each is rounded.
+            assert!((mean - both[channel]).abs() <= 1e-5 * mean.max(1e-3), "{mean} {}", both[channel]);
+            most = most.max((wide[channel] - both[channel]).abs());
+        }
+    }
+    assert!(most > 0.1, "{most}");
 }
 
 /// Between a silhouette and the far edge of its triangle, interpolated normals face away from the eye, and through a

@@ -360,6 +360,7 @@ fn cases() -> Vec<Case> {
         ),
         case(Effect::VertexColor, coloured, of_rung("accurate"), [vec!["colors"], vec![], vec![]]),
         case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),
+        case(Effect::SecondLobe, one("head"), of_rung("accurate"), none()),
         case(
             Effect::Reflection,
             one("jade"),

@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 
 use super::{direction, framed};
 use crate::surfaces::{sphere, torus};
-use crate::{Bounds, Camera, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use crate::{Bounds, Camera, Light, Lobe, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 
 /// Skin: skin1 of Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light
 /// Transport" (2001).
@@ -120,6 +120,8 @@ pub(super) fn head(name: &str) -> Result<Scene, SceneError> {
                 base_color_texture: of_file.base_color_texture,
                 normal_texture: of_file.normal_texture,
                 normal_scale: of_file.normal_scale,
+                // A film of oil over rougher skin; chosen by eye.
+                second_lobe: Some(Lobe { roughness: 0.26, weight: 0.3 }),
                 ..material("skin")
             },
             _ => material("skin"),

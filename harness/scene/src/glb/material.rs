@@ -5,7 +5,7 @@ use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
 use super::texture::Textures;
-use crate::{Density, Dispersion, Material, TextureSlot};
+use crate::{Density, Dispersion, Lobe, Material, TextureSlot};
 
 /// JSON of a material, with the extensions that it needs. Its textures that have an effect are added
 /// to `textures`.
@@ -60,6 +60,9 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
     }
     if let Some(sigma0) = material.sigma0 {
         extras.insert("sigma0".to_owned(), json!(sigma0.to_array()));
+    }
+    if let Some(Lobe { roughness, weight }) = material.second_lobe {
+        extras.insert("secondLobe".to_owned(), json!({"roughness": roughness, "weight": weight}));
     }
     if let Some(medium) = &material.medium {
         extras.insert("scattering".to_owned(), json!(medium.scattering.to_array()));

@@ -3,7 +3,7 @@
 //! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`]. It gives the
 //! refractive index and the dispersion; if the file states these as well, they must agree. `sigma0`
 //! is [`Material::sigma0`]. `scattering` and `absorption`, which require each other, and the
-//! optional `anisotropy` and `veins` are [`Material::medium`]. `solver` is [`Material::solver`].
+//! optional `anisotropy` and `veins` are [`Material::medium`]. `secondLobe` is [`Material::second_lobe`]. `solver` is [`Material::solver`].
 //! Lengths are in world units: as with `attenuationDistance`, the scale of a node does not change
 //! them.
 
@@ -17,7 +17,7 @@ use serde_json::value::RawValue;
 
 use super::error::excerpt;
 use super::medium::medium;
-use crate::{Dispersion, Material, Mineral, Solver};
+use crate::{Dispersion, Lobe, Material, Mineral, Solver};
 
 /// Maximum distance of a file's index from that of its Sellmeier equation: tables give two
 /// decimals.
@@ -43,6 +43,8 @@ pub(super) struct Lapidary<'a> {
     sigma0: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
     solver: Option<&'a RawValue>,
+    #[serde(borrow, default, rename = "secondLobe", deserialize_with = "present")]
+    second_lobe: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
     pub(super) scattering: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
@@ -54,7 +56,8 @@ pub(super) struct Lapidary<'a> {
 }
 
 /// Names of the members of [`Lapidary`].
-const MEMBERS: [&str; 7] = ["sellmeier", "sigma0", "solver", "scattering", "absorption", "anisotropy", "veins"];
+const MEMBERS: [&str; 8] =
+    ["sellmeier", "sigma0", "solver", "secondLobe", "scattering", "absorption", "anisotropy", "veins"];
 
 /// Deserialises a member that is present, even if it is null, which some writers put in place of a
 /// NaN.
@@ -77,6 +80,7 @@ impl Lapidary<'_> {
         }
         material.sigma0 = self.sigma0.map(|json| lengths("sigma0", json)).transpose()?;
         material.medium = medium(self)?;
+        material.second_lobe = self.second_lobe.map(lobe).transpose()?;
         material.solver = self.solver.map(solver).transpose()?;
         if material.solver.is_some() && !material.scatters() {
             return Err("its extras.lapidary has a solver, but nothing there scatters light; give scattering and absorption, or \
@@ -153,6 +157,27 @@ fn mineral(json: &RawValue) -> Result<Mineral, String> {
             "its extras.lapidary.sellmeier is {}, but must be one of {}",
             excerpt(json.get()),
             Mineral::ALL.map(|mineral| format!("{:?}", mineral.name())).join(", ")
+        )
+    })
+}
+
+/// The members of `secondLobe`; both are required, so that a misspelt name is an error.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LobeMembers {
+    roughness: f32,
+    weight: f32,
+}
+
+/// Lobe given by `secondLobe`.
+fn lobe(json: &RawValue) -> Result<Lobe, String> {
+    let read = serde_json::from_str::<LobeMembers>(json.get()).ok();
+    let lobe = read.map(|LobeMembers { roughness, weight }| Lobe { roughness, weight });
+    lobe.filter(|lobe| lobe.is_sound()).ok_or_else(|| {
+        format!(
+            "its extras.lapidary.secondLobe is {}, but must be an object with a roughness above 0 and at most 1, and a weight \
+             above 0 and below 1",
+            excerpt(json.get())
         )
     })
 }

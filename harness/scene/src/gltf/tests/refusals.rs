@@ -439,6 +439,26 @@ fn members_that_contradict_one_another() {
 }
 
 #[test]
+fn second_lobes_out_of_range() {
+    for bad in [
+        json!({"roughness": 0, "weight": 0.5}),
+        json!({"roughness": 1.01, "weight": 0.5}),
+        json!({"roughness": 0.3, "weight": 0}),
+        json!({"roughness": 0.3, "weight": 1}),
+        json!({"roughness": 0.3}),
+        json!({"weight": 0.3}),
+        json!({"roughness": 0.3, "weight": 0.3, "rough": 1}),
+        json!({"roughness": "0.3", "weight": 0.3}),
+        json!([0.3, 0.3]),
+        json!(0.3),
+        Value::Null,
+    ] {
+        let says = "but must be an object with a roughness above 0 and at most 1, and a weight above 0 and below 1";
+        material_refused("extras", json!({"lapidary": {"secondLobe": bad}}), says);
+    }
+}
+
+#[test]
 fn solvers_that_draw_no_scattering() {
     let with = |solver: Value| json!({"lapidary": {"sigma0": [1, 1, 1], "solver": solver}});
     let names = ["convex-8", "reference", "surface", "proxy-1+tracker", "godunov-65", "Accurate", ""];
