@@ -78,6 +78,7 @@ struct CdrfMaterial {
     second_weight: f32,
     base_color_place: TexturePlace,
     normal_place: TexturePlace,
+    thickness_place: TexturePlace,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -116,6 +117,7 @@ struct CdrfVertex {
     @location(8) base_color_uv: vec2f,  //+base_color_texture
     @location(9) normal_uv: vec2f,  //+normal_texture
     @location(10) color: vec3f,  //+vertex_color
+    @location(11) thickness_uv: vec2f,  //+thickness_texture
 }
 
 @vertex
@@ -151,6 +153,12 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         normal_uv = texture_place(material.normal_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
     }
     //+normal_texture }
+    //+thickness_texture {
+    var thickness_uv = vec2f(0.0f);
+    if (EFFECT_THICKNESS_TEXTURE) {
+        thickness_uv = texture_place(material.thickness_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    }
+    //+thickness_texture }
     //+vertex_color {
     var color = vec3f(1.0f);
     if (EFFECT_VERTEX_COLOR) {
@@ -171,16 +179,18 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         base_color_uv,  //+base_color_texture
         normal_uv,  //+normal_texture
         color,  //+vertex_color
+        thickness_uv,  //+thickness_texture
     );
 }
 
-// The derivatives at a pixel, and the curvature that follows from them.
+// The derivatives at a pixel, the curvature that follows from them, and the factor of the lengths by which light spreads.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
     normal_x: vec3f,
     normal_y: vec3f,
     curvature: f32,
+    thickness: f32,
 }
 
 // The surface at a pixel. Call it outside all branches: derivatives need the neighbouring pixels.
@@ -195,7 +205,11 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     } else if (CURVATURE_FORM != CURVATURE_FORM_VERTEX) {
         curvature = curvature_mean(position_x, position_y, normal_x, normal_y);
     }
-    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature);
+    var thickness = 1.0f;
+    if (EFFECT_THICKNESS_TEXTURE) {
+        thickness = textureSampleLevel(thickness_texture, thickness_sampler, input.thickness_uv, 0.0f).g;
+    }
+    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness);
 }
 
 // The unit normal. If interpolation between opposite normals leaves no direction, the surface
@@ -349,10 +363,10 @@ fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
 
 // How far up the light what a bent surface spreads to a point can have entered. On a sphere, light that arrives past the
 // terminator at a cosine -c has entered at most 2 c radii up the light, and it arrives hardly farther past it than three widths.
-fn cdrf_reach(cosine: f32, curvature: f32) -> vec3f {
-    let sigma = cdrf_sigmas(curvature);
-    let spread = 2.0f * (min(vec3f(abs(cosine)), 3.0f * sigma) + sigma);
-    return max(spread / max(abs(cdrf_finite(curvature)), 1e-12f), vec3f(1e-6f));
+fn cdrf_reach(cosine: f32, curvature: f32, spread: f32) -> vec3f {
+    let sigma = cdrf_sigmas(spread);
+    let angle = 2.0f * (min(vec3f(abs(cosine)), 3.0f * sigma) + sigma);
+    return max(angle / max(abs(cdrf_finite(curvature)), 1e-12f), vec3f(1e-6f));
 }
 
 // Reflectance under a light that enters around the point or behind it, as its map says: what enters around is spread, as far
@@ -401,16 +415,18 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         if (EFFECT_NORMAL_TEXTURE) {
             cosines = cdrf_cosines(normals, arrival.direction);
         }
-        var reflectance = cdrf_reflectance(cosines, curvature);
+        // Every width is a length times a curvature.
+        let spread = surface.thickness * curvature;
+        var reflectance = cdrf_reflectance(cosines, spread);
         //+half_space {
         var law = vec3f(1.0f);
         if (EFFECT_HALF_SPACE) {
-            law = scattering_law_of_light(cosine_eye, cdrf_entered(reflectance, curvature), material.law);
+            law = scattering_law_of_light(cosine_eye, cdrf_entered(reflectance, spread), material.law);
         }
         //+half_space }
         if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
             //+translucent_shadow {
-            let reach = cdrf_reach(max(cosines.x, max(cosines.y, cosines.z)), curvature);
+            let reach = cdrf_reach(max(cosines.x, max(cosines.y, cosines.z)), curvature, spread);
             let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, material.free_path, reach);
             var seen = vec3f(1.0f);
             if (EFFECT_HALF_SPACE) {
@@ -441,7 +457,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         }
         var sigma = vec3f(0.0f);
         if (EFFECT_CDRF) {
-            sigma = cdrf_sigmas(surface.curvature);
+            sigma = cdrf_sigmas(surface.thickness * surface.curvature);
         }
         if (EFFECT_NORMAL_TEXTURE) {  //+normal_texture
             //+normal_texture {

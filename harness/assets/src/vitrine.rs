@@ -25,7 +25,7 @@ const ARM: f64 = 138.5;
 const EYE: f64 = 2.0;
 const HOOK: DVec3 = DVec3::new(62.0, 131.0, 6.0);
 
-/// Returns the table, the diamond, the ruby, the candle, the figure, the chain, the ball and the stand's three parts.
+/// Returns the table, the diamond, the ruby, the candle, the figure, the chain, the ball and the stand's four parts.
 pub(crate) fn meshes() -> Result<Vec<Mesh>, SceneError> {
     let (half, rounding) = (DVec3::new(150.0, 7.0, 100.0), 2.5);
     let table = rounded_box(half, rounding, 2).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
@@ -36,33 +36,39 @@ pub(crate) fn meshes() -> Result<Vec<Mesh>, SceneError> {
         table,
         standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
         standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
-        standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
+        standing(&plain(candle::mesh()), turned(0.0), [-54.0, 12.0]),
         standing(&figure::fine_mesh(), turned(8.0), [10.0, -28.0]),
     ];
-    let ball = standing(&plain(sphere(BALL, 64)), turned(0.0), [64.0, 66.0]);
+    let ball = standing(&sphere(BALL, 64), turned(0.0), [64.0, 66.0]);
     Ok(bodies.into_iter().chain(chain).chain([ball]).chain(stand()).collect())
 }
 
-/// Returns the stand's foot, its post, and the arm from which the chain hangs. Each is a body of its own, since stones see
-/// bodies by their bounds, and bounds around all three would be mostly air.
-fn stand() -> [Mesh; 3] {
+/// Returns the stand's foot, its post, its arm, and the hook from which the chain hangs. Each is a body of its own, since
+/// stones see bodies by their bounds, and bounds around all of them would be mostly air.
+fn stand() -> [Mesh; 4] {
+    // Upright, or level with two faces level.
     let rod = |from: DVec3, to: DVec3| {
-        let turn = DQuat::from_rotation_arc(DVec3::Y, (to - from).normalize());
-        let half = DVec3::new(ROD, 0.5 * from.distance(to), ROD);
+        let way = to - from;
+        let half = 0.5 * way.length();
+        let (half, turn) = match way.x == 0.0 && way.z == 0.0 {
+            true => (DVec3::new(ROD, half, ROD), DQuat::IDENTITY),
+            false => (DVec3::new(ROD, ROD, half), DQuat::from_rotation_y(way.x.atan2(way.z))),
+        };
         plain(rounded_box(half, 0.3 * ROD, 3)).placed(turn, 0.5 * (from + to))
     };
     let foot = DVec3::new(11.0, 2.0, 11.0);
-    let over = HOOK.with_y(ARM);
-    let along = (POST.with_y(ARM) - over).normalize();
-    let mut arm = rod(POST.with_y(ARM) + 2.0 * ROD * along, over - ROD * along);
-    // It reaches over the post, and its hook ends a hair above the uppermost link.
+    let (post, over, below) = (POST.with_y(ARM), HOOK.with_y(ARM), ARM - ROD - GAP);
+    let along = (post - over).normalize();
+    // A hair above the uppermost link.
     let eye = HOOK + (EYE + 5.0 * GAP) * DVec3::Y;
-    arm.append(&rod(over, eye));
-    arm.append(&plain(sphere(EYE, 32)).placed(DQuat::IDENTITY, eye));
+    let mut hook = rod(HOOK.with_y(below), eye);
+    hook.append(&plain(sphere(EYE, 32)).placed(DQuat::IDENTITY, eye));
     [
         standing(&plain(rounded_box(foot, 1.5, 4)), turned(0.0), [POST.x, POST.z]),
-        rod(POST + 2.0 * (foot.y + GAP) * DVec3::Y, POST.with_y(ARM - ROD - GAP)),
-        arm,
+        rod(POST + 2.0 * (foot.y + GAP) * DVec3::Y, POST.with_y(below)),
+        // It reaches over the post and over the hook.
+        rod(post + 2.0 * ROD * along, over - 2.0 * ROD * along),
+        hook,
     ]
 }
 

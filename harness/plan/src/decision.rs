@@ -153,6 +153,7 @@ impl Case<'_> {
             Effect::EnvironmentMap => self.environment_map(),
             Effect::BaseColorTexture => self.image(TextureSlot::BaseColor),
             Effect::NormalTexture => self.image(TextureSlot::Normal),
+            Effect::ThicknessTexture => self.thickness_texture(),
             Effect::VertexColor => self.vertex_color(),
             Effect::Microfacet => self.microfacet(),
             Effect::SecondLobe => self.second_lobe(),
@@ -570,6 +571,16 @@ impl Case<'_> {
         }
         let [width, height] = [texture.texels.width(), texture.texels.height()];
         self.drawn_by_rung(format!("{} of {width} x {height} texels", slot.name()))
+    }
+
+    fn thickness_texture(&self) -> Answer {
+        let found = self.image(TextureSlot::Thickness);
+        match self.cdrf() {
+            (false, reason) if found.0 => {
+                off(format!("{}, but no light spreads: {reason}", TextureSlot::Thickness.name()))
+            }
+            _ => found,
+        }
     }
 
     fn vertex_color(&self) -> Answer {

@@ -91,6 +91,8 @@ effects! {
     BaseColorTexture = "base_color_texture", "EFFECT_BASE_COLOR_TEXTURE";
     /// Slopes of the surface that are too fine for the mesh, by an image.
     NormalTexture = "normal_texture", "EFFECT_NORMAL_TEXTURE";
+    /// Spread of light that varies over the surface, by an image.
+    ThicknessTexture = "thickness_texture", "EFFECT_THICKNESS_TEXTURE";
     /// Diffuse colour that varies from vertex to vertex.
     VertexColor = "vertex_color", "EFFECT_VERTEX_COLOR";
     /// Highlights of the lights on a rough surface.
@@ -198,7 +200,7 @@ mod tests {
     fn a_set_has_what_was_put_into_it() {
         let both = Effects::of(&[Effect::Spot]).and(Effects::SHEEN);
         for effect in Effect::ALL {
-            let sheen = [Effect::Dielectric, Effect::Microfacet, Effect::Reflection];
+            let sheen = [Effect::Dielectric, Effect::Microfacet, Effect::SecondLobe, Effect::Reflection];
             let expected = effect == Effect::Spot || sheen.contains(&effect);
             assert_eq!(both.has(effect), expected, "{effect}");
         }

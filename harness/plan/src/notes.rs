@@ -5,6 +5,7 @@ use crate::{Geometry, Note, Objects, Request, Rung};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
+use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world};
 use std::f64::consts::PI;
 
@@ -99,12 +100,14 @@ impl Case<'_> {
     /// Returns the images, and the colours of vertices, that the rung leaves out.
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
-        if self.rung.draws_images() {
-            return Vec::new();
-        }
-        let slots = [TextureSlot::BaseColor, TextureSlot::Normal].into_iter();
-        let lost = slots.filter(|slot| material.texture(*slot).is_some() && material.calls_for(*slot));
-        lost.map(TextureSlot::name).chain((!mesh.colors.is_empty()).then_some("COLOR_0")).collect()
+        let draws = self.rung.draws_images();
+        let spreads = matches!(self.rung, Rung::Diffuse(of) if !of.is_lambert() && of != Reflectance::Blur);
+        let slots = [(TextureSlot::BaseColor, draws), (TextureSlot::Normal, draws), (TextureSlot::Thickness, spreads)];
+        let lost = |(slot, drawn): &(TextureSlot, bool)| {
+            !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
+        };
+        let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
+        slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).collect()
     }
 
     /// Returns what is wrong with the object's mesh for its rung; `None` if nothing is.

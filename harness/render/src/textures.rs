@@ -9,6 +9,7 @@ use lapidary_scene::{Encoding, Material, Mesh, Texels, Texture, TextureTransform
 /// Bindings of the part, in group 1.
 const BASE_COLOR: [u32; 2] = [11, 12];
 const NORMAL: [u32; 2] = [13, 14];
+const THICKNESS: [u32; 2] = [16, 17];
 /// Longest side of the normals' layers in texels. Of larger images each layer holds every second texel, or fewer:
 /// they would take a gigabyte.
 const LARGEST_NORMALS: u32 = 2048;
@@ -33,7 +34,11 @@ pub(crate) fn bound(
 ) -> Vec<(u32, Bound)> {
     let mut bound: Vec<(u32, Bound)> = Vec::new();
     let reads = |builder: &Builder<'_>, bindings: [u32; 2]| builder.binds(pipeline, 1, bindings[0]);
-    if let (Some(texture), true) = (&material.base_color_texture, reads(builder, BASE_COLOR)) {
+    for (slot, name, sampler, bindings) in [
+        (&material.base_color_texture, "base colour image", "base colour image's sampler", BASE_COLOR),
+        (&material.thickness_texture, "thickness image", "thickness image's sampler", THICKNESS),
+    ] {
+        let (Some(texture), true) = (slot, reads(builder, bindings)) else { continue };
         let texels = &texture.texels;
         let format = match texture.encoding {
             Encoding::Srgb => wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -41,9 +46,9 @@ pub(crate) fn bound(
         };
         let contents = Contents::Bytes(texels.bytes().to_vec());
         let size = [texels.width(), texels.height(), 1];
-        let image = builder.texture("base colour image", (wgpu::TextureDimension::D2, format), size, contents);
-        let sampler = builder.sampler("base colour image's sampler", texture.wrap.map(address));
-        bound.extend([(BASE_COLOR[0], image.into()), (BASE_COLOR[1], sampler.into())]);
+        let image = builder.texture(name, (wgpu::TextureDimension::D2, format), size, contents);
+        let sampler = builder.sampler(sampler, texture.wrap.map(address));
+        bound.extend([(bindings[0], image.into()), (bindings[1], sampler.into())]);
     }
     if let (Some(texture), true) = (&material.normal_texture, reads(builder, NORMAL)) {
         let layers =

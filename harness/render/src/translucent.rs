@@ -181,7 +181,8 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record = record.with("second_alpha", lobe.roughness * lobe.roughness).with("second_weight", lobe.weight);
     let record =
         record.within("base_color_place", |record| textures::place(record, material.base_color_texture.as_ref()));
-    record.within("normal_place", |record| textures::place(record, material.normal_texture.as_ref()))
+    let record = record.within("normal_place", |record| textures::place(record, material.normal_texture.as_ref()));
+    record.within("thickness_place", |record| textures::place(record, material.thickness_texture.as_ref()))
 }
 
 /// Returns the material's widths, made safe.

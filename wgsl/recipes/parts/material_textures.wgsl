@@ -1,4 +1,4 @@
-// material_textures: what the images of a material hold at a point: its colour, and the slopes of its surface.
+// material_textures: what the images of a material hold at a point: its colour, the slopes of its surface, and how thick it is.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
 //   2, 2011, for normals blurred per colour; Mikkelsen, "Surface Gradient-Based Bump Mapping Framework",
@@ -10,6 +10,8 @@
 override EFFECT_BASE_COLOR_TEXTURE: bool = false;
 // The surface has slopes too fine for the mesh. Called for by a material's normalTexture.
 override EFFECT_NORMAL_TEXTURE: bool = false;
+// How far light spreads inside varies over the surface. Called for by a material's thicknessTexture on a body that cdrf draws.
+override EFFECT_THICKNESS_TEXTURE: bool = false;
 // The diffuse colour varies from vertex to vertex. Called for by a mesh's COLOR_0.
 override EFFECT_VERTEX_COLOR: bool = false;
 
@@ -26,6 +28,9 @@ struct TexturePlace {
 // red, green and blue light spread in the material.
 @group(1) @binding(13) var normal_texture: texture_2d_array<f32>;
 @group(1) @binding(14) var normal_sampler: sampler;
+// A share in green.
+@group(1) @binding(16) var thickness_texture: texture_2d<f32>;
+@group(1) @binding(17) var thickness_sampler: sampler;
 // Three floats per vertex, linear RGB.
 @group(1) @binding(15) var<storage, read> colors: array<f32>;
 

@@ -94,6 +94,8 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     let mut coloured = one("head")?;
     for object in &mut coloured.objects {
         object.mesh.colors = vec![Vec3::ONE; object.mesh.positions.len()];
+        object.material.thickness = 1.0;
+        object.material.thickness_texture = object.material.base_color_texture.clone();
     }
     let mut veined = spotlit("dragon")?;
     for object in &mut veined.objects {
@@ -205,6 +207,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::Cdrf,
                 Effect::BaseColorTexture,
                 Effect::NormalTexture,
+                Effect::ThicknessTexture,
                 Effect::VertexColor,
                 Effect::Microfacet,
                 Effect::SecondLobe,

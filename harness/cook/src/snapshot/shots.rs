@@ -64,7 +64,7 @@ pub const SHOTS: [Shot; 55] = [
         quality: Quality::Best,
         ..fine(shot(
             "vitrine",
-            "A vitrine: ten bodies, each by the technique that it calls for",
+            "A vitrine: eleven bodies, each by the technique that it calls for",
             "vitrine",
             BY_MATERIAL,
         ))

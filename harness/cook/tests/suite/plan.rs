@@ -209,6 +209,9 @@ fn cases() -> Vec<Case> {
     let spotlit = Scene { lights: vec![spot], ..one("wax") };
     let mut coloured = one("wax");
     coloured.objects[0].mesh.colors = vec![Vec3::ONE; coloured.objects[0].mesh.positions.len()];
+    let mut thick = one("head");
+    thick.objects[0].material.thickness = 1.0;
+    thick.objects[0].material.thickness_texture = thick.objects[0].material.base_color_texture.clone();
     let mut thin = one("brilliant");
     thin.objects[0].material.thickness = 0.0;
     let mut copied = one("octahedron");
@@ -357,6 +360,12 @@ fn cases() -> Vec<Case> {
             one("head"),
             of_rung("accurate"),
             [vec!["normals by image", "normal image's sampler"], vec![], vec![]],
+        ),
+        case(
+            Effect::ThicknessTexture,
+            thick,
+            of_rung("accurate"),
+            [vec!["thickness image", "thickness image's sampler"], vec![], vec![]],
         ),
         case(Effect::VertexColor, coloured, of_rung("accurate"), [vec!["colors"], vec![], vec![]]),
         case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),
@@ -512,7 +521,7 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
     fn group(object: &Object) -> &str {
         match object.name.as_str() {
             "candle" | "figure" => "light goes through",
-            "foot" | "post" | "arm" => "stand",
+            "foot" | "post" | "arm" | "hook" => "stand",
             other => other,
         }
     }

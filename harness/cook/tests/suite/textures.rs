@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
+use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Camera, Encoding, Light, Material, Mesh, Object, Scene, Texels, Texture, TextureTransform, Wrap};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -169,13 +170,66 @@ fn colours_of_vertices_run_straight_between_them() {
     }
 }
 
+/// An image of one share is that share of every length by which light spreads: the ball is that of the scaled material.
+/// With two shares, each side is.
+#[test]
+fn a_thickness_scales_how_far_light_spreads() {
+    let image = |left: u8, right: u8| {
+        let bytes = [[left; 64], [right; 64]].concat().into_iter().flat_map(|share| [7, share, 90, 255]).collect();
+        Texture::new(Arc::new(Texels::new(128, 1, bytes).expect("an image")), Encoding::Linear)
+    };
+    for rung in ["accurate", "table-257-rgba16f", "power", "drift", "spherical"] {
+        let mut ball = Scene::named("skin").expect("built in");
+        ball.objects.truncate(1);
+        ball.objects[0].mesh = sphere(8.0, 96);
+        ball.objects[0].material.thickness = 20.0;
+        let ball = ball.seen_from(80.0, 10.0);
+        let with = |texture: Option<Texture>| {
+            let mut scene = ball.clone();
+            scene.objects[0].material.thickness_texture = texture;
+            draw(&scene, rung).linear
+        };
+        let scaled = |share: f32| {
+            let mut scene = ball.clone();
+            let material = &mut scene.objects[0].material;
+            material.sigma0 = material.sigma0.map(|sigma0| share * sigma0);
+            let medium = material.medium.as_mut().expect("skin");
+            (medium.scattering, medium.absorption) = (medium.scattering / share, medium.absorption / share);
+            draw(&scene, rung).linear
+        };
+        let distance = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+            let apart = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
+            a.iter().zip(b).map(apart).fold(0.0, f32::max)
+        };
+        let (half, thin, plain) = (scaled(128.0 / 255.0), scaled(32.0 / 255.0), with(None));
+        // The table's step beside the widest sigma is 1/256.
+        let most = if rung.starts_with("table") { 2e-3 } else { 2e-5 };
+        assert_eq!(with(Some(image(255, 255))), plain, "{rung}");
+        let found = distance(&with(Some(image(128, 128))), &half);
+        let apart = distance(&half, &plain).min(distance(&half, &thin));
+        println!("{rung}: {found:.1e} off where the share makes {apart:.3}");
+        assert!(found < most && apart > 0.02, "{rung}: {found} {apart}");
+        // Around the ball u runs once: a pixel is of one share or of the other, but for a texel's width between them.
+        let both = with(Some(image(128, 32)));
+        let like = |other: &[[f32; 4]]| {
+            let is_like = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).all(|k| (a[k] - b[k]).abs() < most);
+            both.iter().zip(other).filter(is_like).count()
+        };
+        let covered = both.iter().filter(|pixel| pixel[3] > 0.0).count();
+        let (beside, of_half, of_thin) = (both.len() - covered, like(&half), like(&thin));
+        assert!(of_half + of_thin > 2 * beside + covered * 95 / 100, "{rung}: {of_half} {of_thin} of {covered}");
+        assert!(of_half.min(of_thin) < beside + covered * 9 / 10, "{rung}: {of_half} {of_thin} of {covered}");
+    }
+}
+
 /// What is drawn by its factor alone is said.
 #[test]
 fn a_stone_with_an_image_is_told_that_its_factor_is_drawn() {
     let mut stone = Scene::named("brilliant").expect("built in");
     stone.objects[0].material.base_color_texture = Some(patches(Encoding::Srgb));
+    stone.objects[0].material.thickness_texture = Some(patches(Encoding::Linear));
     let settings = Settings::of_size(SIDE, SIDE);
     let plan = render::plan::Plan::of(&stone, &settings).expect("a plan");
     let said: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
-    assert!(said.iter().any(|line| line.contains("does not draw baseColorTexture")), "{said:?}");
+    assert!(said.iter().any(|line| line.contains("does not draw baseColorTexture and thicknessTexture")), "{said:?}");
 }

@@ -15,7 +15,19 @@ fn each_body_calls_for_a_technique_of_its_own() {
     let (stone, through) = ("walk-8+tracker", "diffusion-64");
     assert_eq!(
         rungs,
-        ["lambert", stone, stone, through, through, "bvh-8+tracker", "drift", "lambert", "lambert", "lambert"]
+        [
+            "lambert",
+            stone,
+            stone,
+            through,
+            through,
+            "bvh-8+tracker",
+            "drift",
+            "lambert",
+            "lambert",
+            "lambert",
+            "lambert"
+        ]
     );
 }
 
@@ -40,7 +52,7 @@ fn the_camera_sees_every_body() {
     }
     let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
     println!("{shares:?}");
-    assert!(shares.iter().all(|(_, share)| *share > 0.002), "{shares:?}");
+    assert!(shares.iter().all(|(_, share)| *share > 0.0005), "{shares:?}");
     // The table extends beyond the picture.
     assert!(at_an_edge.iter().enumerate().all(|(place, at_an_edge)| *at_an_edge == (place == 0)), "{at_an_edge:?}");
 }

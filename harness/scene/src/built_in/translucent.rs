@@ -121,7 +121,7 @@ pub(super) fn head(name: &str) -> Result<Scene, SceneError> {
                 normal_texture: of_file.normal_texture,
                 normal_scale: of_file.normal_scale,
                 // A film of oil over rougher skin; chosen by eye.
-                second_lobe: Some(Lobe { roughness: 0.26, weight: 0.3 }),
+                second_lobe: Some(Lobe { roughness: 0.33, weight: 0.3 }),
                 ..material("skin")
             },
             _ => material("skin"),

@@ -28,7 +28,7 @@ pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
 }
 
 /// Returns names and materials, in the order of the file.
-fn bodies() -> [(&'static str, Material); 10] {
+fn bodies() -> [(&'static str, Material); 11] {
     let ruby = Material { dispersion: Dispersion::None, ..materials::ruby() };
     [
         ("table", materials::slate()),
@@ -41,6 +41,7 @@ fn bodies() -> [(&'static str, Material); 10] {
         ("foot", materials::bronze()),
         ("post", materials::bronze()),
         ("arm", materials::bronze()),
+        ("hook", materials::bronze()),
     ]
 }
 

@@ -171,7 +171,7 @@ struct LobeMembers {
 
 /// Lobe given by `secondLobe`.
 fn lobe(json: &RawValue) -> Result<Lobe, String> {
-    let read = serde_json::from_str::<LobeMembers>(json.get()).ok();
+    let read = is_object(json).then(|| serde_json::from_str::<LobeMembers>(json.get()).ok()).flatten();
     let lobe = read.map(|LobeMembers { roughness, weight }| Lobe { roughness, weight });
     lobe.filter(|lobe| lobe.is_sound()).ok_or_else(|| {
         format!(

@@ -6,7 +6,10 @@ use crate::{Bounds, Mineral};
 fn each_body_has_what_calls_for_its_technique() {
     let scene = Scene::named("vitrine").expect("built in");
     let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
-    assert_eq!(names, ["table", "diamond", "ruby", "candle", "figure", "prism_chain", "ball", "foot", "post", "arm"]);
+    assert_eq!(
+        names,
+        ["table", "diamond", "ruby", "candle", "figure", "prism_chain", "ball", "foot", "post", "arm", "hook"]
+    );
     let [table, diamond, ruby, candle, figure, chain, ball, stand @ ..] = &scene.objects[..] else {
         panic!("{names:?}")
     };
@@ -46,7 +49,7 @@ fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
         let own = bounds(object);
         let stands = (0.01..0.03).contains(&own.min.y);
         let hangs = own.min.y > 3.9;
-        let above = ["prism_chain", "post", "arm"].contains(&object.name.as_str());
+        let above = ["prism_chain", "post", "arm", "hook"].contains(&object.name.as_str());
         assert_eq!((stands, hangs), (!above, above), "{own:?}");
         // At some distance from the table's edge.
         let margin = (own.min - table.min).min(table.max - own.max);
