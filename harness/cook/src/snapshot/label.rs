@@ -7,6 +7,8 @@ const HEIGHT: RasterHeight = RasterHeight::Size16;
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// Distance of the text from the picture's upper left corner, in pixels.
 const MARGIN: usize = 6;
+/// Height of the band that holds the text, in pixels: its times are measured again and again, so that no picture is compared there.
+pub(super) const BAND: u32 = 40;
 /// Code value of the text.
 const SHADE: u8 = 225;
 

@@ -52,7 +52,9 @@ fn the_camera_sees_every_body() {
     }
     let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
     println!("{shares:?}");
-    assert!(shares.iter().all(|(_, share)| *share > 0.0005), "{shares:?}");
+    // The parts of the stand are thin.
+    let least = |name: &str| if ["foot", "post", "arm", "hook"].contains(&name) { 0.0 } else { 0.005 };
+    assert!(shares.iter().all(|(name, share)| *share > least(name)), "{shares:?}");
     // The table extends beyond the picture.
     assert!(at_an_edge.iter().enumerate().all(|(place, at_an_edge)| *at_an_edge == (place == 0)), "{at_an_edge:?}");
 }
