@@ -402,7 +402,10 @@ fn cdrf_around(around: HarmonicsAround, sigma: vec3f) -> vec3f {
 // Irradiance, each light's part spread by its reflectance and seen by the law of the matter.
 fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, toward_eye: vec3f) -> vec3f {
     let normal = normals.coarse;
-    let cosine_eye = mesh_cosine_to_eye(normal, toward_eye, surface.position_x, surface.position_y);  //+half_space
+    var cosine_eye = 1.0f;
+    if (EFFECT_HALF_SPACE) {
+        cosine_eye = mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position));
+    }
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
@@ -427,13 +430,12 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
             //+translucent_shadow {
             let reach = cdrf_reach(max(cosines.x, max(cosines.y, cosines.z)), curvature, spread);
-            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, material.free_path, reach);
+            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, surface.thickness * material.free_path, reach);
             var seen = vec3f(1.0f);
             if (EFFECT_HALF_SPACE) {
                 seen = law;
             }
-            let facing = mesh_cosine_to_eye(normal, toward_eye, surface.position_x, surface.position_y);
-            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, facing);
+            reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, cosine_eye);
             //+translucent_shadow }
         } else {  //+translucent_shadow
             if (EFFECT_SHADOW) {

@@ -10,7 +10,7 @@ pub mod strip;
 mod walked;
 
 use beside_walks::BesideWalks;
-pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear, compare_outside};
+pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear};
 pub(crate) use comparison::{flip, flip_of_rgb};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
@@ -77,15 +77,6 @@ impl Committed {
             Self::Strip => strip::render(gpu),
             Self::BesideWalks(of) => of.render(gpu),
         }
-    }
-
-    /// Compares new pictures with the committed ones, as [`compare`] does; labels are not compared.
-    ///
-    /// # Errors
-    /// Returns an error as in [`compare`].
-    pub fn compare(self, pictures: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
-        let is_label = |row: u32| matches!(self, Self::BesideWalks(_)) && row % EXR_SIDE < label::BAND;
-        compare_outside(self.name(), pictures, folder, is_label)
     }
 
     /// Renders only the second of them, which is a quarter of the work.

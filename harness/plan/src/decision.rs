@@ -576,6 +576,7 @@ impl Case<'_> {
     fn thickness_texture(&self) -> Answer {
         let found = self.image(TextureSlot::Thickness);
         match self.cdrf() {
+            (true, _) if found.0 && self.request.without.has(Effect::Cdrf) => off("cdrf is left out"),
             (false, reason) if found.0 => {
                 off(format!("{}, but no light spreads: {reason}", TextureSlot::Thickness.name()))
             }
@@ -611,10 +612,16 @@ impl Case<'_> {
         let Some(lobe) = self.material.second_lobe else {
             return off("no secondLobe");
         };
+        if self.request.without.has(Effect::Microfacet) {
+            return off("microfacet is left out");
+        }
         if let (false, reason) = self.microfacet() {
             return off(format!("no highlights: {reason}"));
         }
-        self.drawn_by_rung(format!("secondLobe of roughness {}, weight {}", short(lobe.roughness), short(lobe.weight)))
+        if !self.rung.draws_images() {
+            return off(format!("the rung {} draws the first lobe alone", self.rung));
+        }
+        on(format!("secondLobe of roughness {}, weight {}", short(lobe.roughness), short(lobe.weight)))
     }
 
     fn reflection(&self) -> Answer {

@@ -52,7 +52,7 @@ pub enum ShadowForm {
 }
 
 impl ShadowForm {
-    /// All forms, the cheapest first.
+    /// All forms, each with more than the one before.
     pub const ALL: [Self; 3] = [Self::Soft, Self::Colors, Self::Through];
 
     /// Name on the command line.

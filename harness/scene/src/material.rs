@@ -171,7 +171,7 @@ impl Material {
             Some("its material's roughness is not between 0 and 1; mend it")
         } else if !self.second_lobe.is_none_or(Lobe::is_sound) {
             Some(
-                "its material's second lobe has a roughness outside 0 to 1 or a weight that is not between them; mend it",
+                "its material's second lobe has a roughness that is not above 0 and at most 1, or a weight that is not between 0 and 1; mend it",
             )
         } else if !self.sigma0.is_none_or(is_length) {
             Some("its material's sigma0 is not finite and at least 0; mend it")

@@ -8,8 +8,8 @@ use lapidary_render as render;
 use lapidary_render::{
     Curvature, DiffuseOptions, DiffusionOptions, GemOptions, OpticalPathOptions, Settings, ShadowForm,
 };
+use lapidary_scene::Scene;
 use lapidary_scene::nearest::suggest;
-use lapidary_scene::{Object, Scene};
 
 #[derive(clap::Args)]
 pub(super) struct Drawn {
@@ -253,7 +253,7 @@ impl Drawn {
         let own = [
             Given {
                 technique: "curvature",
-                flags: given([("--curvature", curvature.is_some()), ("--shadows", shadows.is_some())]),
+                flags: given([("--curvature", curvature.is_some())]),
                 draws: |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
             },
             Given {
@@ -269,14 +269,8 @@ impl Drawn {
                 draws: |rung, _| matches!(rung, Rung::Diffusion(_)),
             },
         ];
-        let softens =
-            |object: &Object| Decisions::of(object, &scene, &settings.request()).has(Effect::TranslucentShadow);
-        if shadows.is_some() && !scene.objects.iter().any(softens) {
-            return Err(Failure(format!(
-                "scene `{}`: --shadows has no meaning, since no matter there softens shadows: what would is drawn by its curvature with \
-                 half_space and shadow; leave it out, or add `--with half_space,shadow`",
-                scene.name
-            )));
+        if shadows.is_some() {
+            refuse_without_meaning(&scene, &settings, Effect::TranslucentShadow, "--shadows")?;
         }
         let gem = self.gem.iter().flat_map(Gem::given);
         refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;

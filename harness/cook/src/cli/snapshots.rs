@@ -38,7 +38,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             snapshot::accept(name, &pictures, &folder)?;
             lines.push(format!("{name:<24} accepted"));
         } else {
-            match committed.compare(&pictures, &folder) {
+            match snapshot::compare(name, &pictures, &folder) {
                 Ok(comparison) => {
                     let verdict = if comparison.holds() { "same" } else { "DIFFERENT" };
                     lines.push(format!(

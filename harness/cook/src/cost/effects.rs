@@ -212,7 +212,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::Microfacet,
                 Effect::SecondLobe,
             ],
-            stands_on: &[(Effect::SecondLobe, Effect::Microfacet)],
+            stands_on: &[(Effect::SecondLobe, Effect::Microfacet), (Effect::ThicknessTexture, Effect::Cdrf)],
         },
         Case {
             name: "vitrine, table and ruby",

@@ -28,7 +28,8 @@ pub struct BesideWalks {
     scenes: &'static [&'static str],
     /// The ways of drawing, column by column; the difference of the last one is shown after the walks.
     looks: &'static [Look],
-    /// A ladder's committed report, and the measure whose distances and times the labels give.
+    /// A ladder's committed report, and the measure whose distances and times the labels give. After it was measured
+    /// again, the picture is out of date, and is compared as such.
     record: (&'static str, &'static str),
 }
 

@@ -54,28 +54,9 @@ impl Comparison {
 /// # Errors
 /// Returns an error if a reference is missing, unreadable or of another size, or if a pixel of
 /// either is not finite.
-pub fn compare(name: &str, pictures: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
-    compare_outside(name, pictures, folder, |_| false)
-}
-
-/// Compares new pictures as [`compare`] does, but for the rows of the PNG that `is_label` names.
-///
-/// # Errors
-/// Returns an error as in [`compare`].
-pub fn compare_outside(
-    name: &str,
-    [seen, linear]: &[Picture; 2],
-    folder: &Path,
-    is_label: impl Fn(u32) -> bool,
-) -> Result<Comparison, SnapshotError> {
+pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
     let png = folder.join(format!("{name}.png"));
-    let mut reference = read(&png, (seen.width, seen.height))?.into_rgb8();
-    for (place, pixel) in (0..).zip(reference.pixels_mut()) {
-        if is_label(place / seen.width) {
-            let [red, green, blue, _] = seen.encoded[place as usize];
-            pixel.0 = [red, green, blue];
-        }
-    }
+    let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
     let rmse = linear_rmse(name, linear, folder)?;
     require_finite(&format!("the new picture {name}"), seen.width, &seen.linear)?;
     let map = flip_map(seen, reference.as_raw());

@@ -7,14 +7,23 @@ const HEIGHT: RasterHeight = RasterHeight::Size16;
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// Distance of the text from the picture's upper left corner, in pixels.
 const MARGIN: usize = 6;
-/// Height of the band that holds the text, in pixels: its times are measured again and again, so that no picture is compared there.
-pub(super) const BAND: u32 = 40;
+/// Share of the light that the ground of the text keeps, of 255.
+const GROUND: u32 = 90;
 /// Code value of the text.
 const SHADE: u8 = 225;
 
-/// Writes lines of text into the upper left corner of the encoded picture. What does not fit is cut off.
+/// Writes lines of text on a dark ground into the upper left corner of the encoded picture. What does not fit is cut off.
 pub(super) fn label(picture: &mut Picture, lines: &[&str]) {
     let (width, height) = (picture.width as usize, picture.height as usize);
+    let lines: Vec<&str> = lines.iter().copied().filter(|line| !line.is_empty()).collect();
+    let letters = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default();
+    let right = if letters > 0 { 2 * MARGIN + letters * get_raster_width(WEIGHT, HEIGHT) } else { 0 };
+    let below = if letters > 0 { 2 * MARGIN + lines.len() * HEIGHT.val() } else { 0 };
+    for row in 0..below.min(height) {
+        for pixel in &mut picture.encoded[row * width..][..right.min(width)] {
+            pixel[..3].iter_mut().for_each(|value| *value = (u32::from(*value) * GROUND / 255) as u8);
+        }
+    }
     for (number, line) in lines.iter().enumerate() {
         for (place, letter) in line.chars().enumerate() {
             let Some(raster) = get_raster(letter, WEIGHT, HEIGHT) else { continue };
@@ -52,7 +61,7 @@ mod tests {
                 Picture { width: side, height: side, linear, encoded, lost: None, walked: None, notes: Vec::new() };
             label(&mut picture, &[line, line]);
             assert_eq!(picture.encoded.iter().any(|pixel| pixel[0] > 150), is_written, "{side} {line}");
-            assert!(picture.encoded.iter().all(|pixel| pixel[3] == 255 && (7..=SHADE).contains(&pixel[0])));
+            assert!(picture.encoded.iter().all(|pixel| pixel[3] == 255 && pixel[0] <= SHADE));
         }
     }
 }

@@ -55,7 +55,7 @@ const BY_MATERIAL: &str = "by-material";
 /// All committed pictures of a single scene.
 pub const SHOTS: [Shot; 55] = [
     Shot {
-        paragraph: "Every technique at once, each body by what its material calls for: a table and a stand that are opaque, a diamond with \
+        paragraph: "Each body by what its material calls for: a table and a stand that are opaque, a diamond with \
             dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
             figure, and a chain of clear glass. `./cook plan vitrine --quality best` says why, and what follows: nothing is compiled, bound \
             or run that no body calls for.",

@@ -589,7 +589,7 @@ fn a_highlight_of_two_lobes_is_the_mean_of_both() {
 /// middle: those of triangles that are seen nearly edge-on. By the normal's own cosine a rim is black.
 #[test]
 fn a_coarse_mesh_has_no_black_rim() {
-    for rung in ["drift", "diffusion-32"] {
+    for rung in ["drift", "diffusion-32", "godunov-32"] {
         let mut scene = ball(10.0, Vec3::splat(2.0));
         scene.objects[0].mesh = sphere(10.0, 12);
         scene.objects[0].material.ior = 1.5;

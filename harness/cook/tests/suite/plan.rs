@@ -276,7 +276,17 @@ fn cases() -> Vec<Case> {
                 vec!["texture_irradiance", "texture_diffusion"],
             ],
         ),
-        case(Effect::HalfSpace, one("wax"), Settings { half_space: true, ..of_rung("accurate") }, none()),
+        // By itself it takes none of what the spread of light takes.
+        case(
+            Effect::HalfSpace,
+            one("wax"),
+            Settings {
+                half_space: true,
+                without: Effects::of(&[Effect::Cdrf, Effect::Environment]).and(Effects::SHEEN),
+                ..of_rung("accurate")
+            },
+            none(),
+        ),
         case(
             Effect::OpticalPath,
             one("dragon"),

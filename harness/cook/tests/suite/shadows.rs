@@ -7,7 +7,7 @@ use lapidary_bvh_trace::BvhTraceHit;
 use lapidary_bvh_trace::traversal::{self, met};
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
-use lapidary_render::Settings;
+use lapidary_render::{DiffuseOptions, Settings, ShadowForm};
 use lapidary_scene::surfaces::{rounded_box, sphere, torus};
 use lapidary_scene::{Bvh, Density, Light, Material, Medium, Mesh, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
@@ -359,6 +359,36 @@ fn a_shadow_on_scattering_matter_is_the_same_from_near_and_far() {
 
 /// Through a ball of scattering matter, lit from behind, comes what the slab's closed form says of the way inside: at its
 /// middle, where the light's way is the diameter and enters head-on.
+#[test]
+fn each_form_of_a_shadow_on_scattering_matter_draws_more_than_the_one_before() {
+    let draw = |scene: &Scene, shadows: ShadowForm| {
+        let usual = settings("drift");
+        let diffuse = DiffuseOptions { shadows, ..usual.diffuse };
+        let settings = Settings { half_space: true, shadows: true, diffuse, ..usual };
+        render::render(super::gpu(), scene, &settings).expect("rendered").linear
+    };
+    let bunny = Scene::named("skin_bunny").expect("built in");
+    let mut grey = bunny.clone();
+    let material = &mut grey.objects[0].material;
+    material.base_color = Vec3::splat(0.5);
+    material.medium = Some(Medium::isotropic(Vec3::splat(0.9), Vec3::splat(0.1)));
+    let most = |a: &[[f32; 4]], b: &[[f32; 4]], channel: usize| {
+        a.iter().zip(b).map(|(a, b)| a[channel] - b[channel]).fold(0.0, f32::max)
+    };
+    // In grey matter all colours spread alike, so that both kinds of edges are one.
+    let [soft, colors] = [ShadowForm::Soft, ShadowForm::Colors].map(|form| draw(&grey, form));
+    let apart = |channel| most(&soft, &colors, channel).max(most(&colors, &soft, channel));
+    assert!((0..3).all(|channel| apart(channel) < 1e-5), "{:?}", [0, 1, 2].map(apart));
+    // In skin they are not, and light through thin parts only adds.
+    let [soft, colors, through] = ShadowForm::ALL.map(|form| draw(&bunny, form));
+    for channel in 0..3 {
+        let apart = most(&soft, &colors, channel).max(most(&colors, &soft, channel));
+        let (added, lost) = (most(&through, &colors, channel), most(&colors, &through, channel));
+        println!("channel {channel}: soft and colors {apart:.3}, through adds {added:.3} and loses {lost:.1e}");
+        assert!(apart > 0.005 && added > 0.01 && lost <= 0.0, "{channel}: {apart} {added} {lost}");
+    }
+}
+
 #[test]
 fn light_comes_through_a_body_as_through_a_slab() {
     let skin = Scene::named("skin").expect("built in");

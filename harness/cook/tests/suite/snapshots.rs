@@ -38,7 +38,7 @@ fn pictures_are_as_they_were() {
     for committed in super::sampled(Committed::all(), ONE_IN) {
         let name = committed.name();
         let pictures = committed.render(super::gpu()).expect("rendered");
-        let comparison = committed.compare(&pictures, &committed.folder()).expect(name);
+        let comparison = snapshot::compare(name, &pictures, &committed.folder()).expect(name);
         println!("{name:28} {comparison:?}");
         assert!(comparison.holds(), "{name}: {comparison:?}; see the new picture and the difference beside it");
     }

@@ -218,7 +218,11 @@ fn a_thickness_scales_how_far_light_spreads() {
         let covered = both.iter().filter(|pixel| pixel[3] > 0.0).count();
         let (beside, of_half, of_thin) = (both.len() - covered, like(&half), like(&thin));
         assert!(of_half + of_thin > 2 * beside + covered * 95 / 100, "{rung}: {of_half} {of_thin} of {covered}");
-        assert!(of_half.min(of_thin) < beside + covered * 9 / 10, "{rung}: {of_half} {of_thin} of {covered}");
+        // Seen from an azimuth of 10 degrees, 41 % of the disc is the smaller side.
+        assert!(of_half.min(of_thin) > beside + covered * 35 / 100, "{rung}: {of_half} {of_thin} of {covered}");
+        // Nothing spreads where the share is 0.
+        let lambert = draw(&ball, "lambert").linear;
+        assert!(distance(&with(Some(image(0, 0))), &lambert) < most, "{rung}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! The vitrine: a body for each technique, all in view.
+//! The vitrine: each body by what its material calls for, all in view.
 
 use lapidary_plan::Decisions;
 use lapidary_render::Settings;
@@ -7,7 +7,7 @@ use lapidary_scene::{Object, Scene};
 
 /// The rule decides from the ball's thickness, and from measurements of the candle and the figure.
 #[test]
-fn each_body_calls_for_a_technique_of_its_own() {
+fn each_body_is_drawn_as_its_material_calls_for() {
     let scene = Scene::named("vitrine").expect("built in");
     let settings = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(4, 3) };
     let decisions = Decisions::all(&scene, &settings.request());
@@ -53,7 +53,7 @@ fn the_camera_sees_every_body() {
     let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
     println!("{shares:?}");
     // The parts of the stand are thin.
-    let least = |name: &str| if ["foot", "post", "arm", "hook"].contains(&name) { 0.0 } else { 0.005 };
+    let least = |name: &str| if ["foot", "post", "arm", "hook"].contains(&name) { 0.0 } else { 0.008 };
     assert!(shares.iter().all(|(name, share)| *share > least(name)), "{shares:?}");
     // The table extends beyond the picture.
     assert!(at_an_edge.iter().enumerate().all(|(place, at_an_edge)| *at_an_edge == (place == 0)), "{at_an_edge:?}");
