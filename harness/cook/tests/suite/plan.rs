@@ -397,7 +397,8 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
     assert_eq!(covered, Effect::ALL, "every effect once");
     for Case { effect, scene, settings, goes } in cases {
         let on = drawn(&scene, &settings);
-        let off = drawn(&scene, &Settings { without: Effects::of(&[effect]), ..settings.clone() });
+        let without = settings.without.and(Effects::of(&[effect]));
+        let off = drawn(&scene, &Settings { without, ..settings.clone() });
         let [resources, recipes, gone_passes] = goes;
         // The listings differ in exactly the effect's own items.
         let short = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();

@@ -143,9 +143,11 @@ fn a_black_square_is_seen() {
     for picture in super::sampled(Committed::all(), ONE_IN) {
         let (name, folder) = (picture.name(), picture.folder());
         let comparison = spoilt(name, &folder, |[seen, _]| {
-            let ((left, top), width) = (brightest(seen, 32), seen.width as usize);
-            for row in top..top + 32 {
-                seen.encoded[row * width + left..][..32].fill([0, 0, 0, 255]);
+            // A sixteenth of the width, and at least 32.
+            let (width, side) = (seen.width as usize, (seen.width as usize / 16).max(32));
+            let (left, top) = brightest(seen, side);
+            for row in top..top + side {
+                seen.encoded[row * width + left..][..side].fill([0, 0, 0, 255]);
             }
         });
         let comparison = comparison.expect(name);
