@@ -404,6 +404,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
     let normal = normals.coarse;
     var cosine_eye = 1.0f;
     if (EFFECT_HALF_SPACE) {
+        // By derivatives of its own: those of the surface bring its curvature along.
         cosine_eye = mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position));
     }
     var received = vec3f(0.0f);

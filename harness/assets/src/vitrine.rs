@@ -50,9 +50,10 @@ fn stand() -> [Mesh; 4] {
     let rod = |from: DVec3, to: DVec3| {
         let way = to - from;
         let half = 0.5 * way.length();
-        let (half, turn) = match way.x == 0.0 && way.z == 0.0 {
-            true => (DVec3::new(ROD, half, ROD), DQuat::IDENTITY),
-            false => (DVec3::new(ROD, ROD, half), DQuat::from_rotation_y(way.x.atan2(way.z))),
+        let (half, turn) = if way.x == 0.0 && way.z == 0.0 {
+            (DVec3::new(ROD, half, ROD), DQuat::IDENTITY)
+        } else {
+            (DVec3::new(ROD, ROD, half), DQuat::from_rotation_y(way.x.atan2(way.z)))
         };
         plain(rounded_box(half, 0.3 * ROD, 3)).placed(turn, 0.5 * (from + to))
     };

@@ -131,9 +131,6 @@ pub enum SnapshotError {
         /// Width and height of the rendered picture in pixels.
         expected: (u32, u32),
     },
-    /// The figures for a picture's labels are missing or damaged.
-    #[error("the figures for the labels: {0}")]
-    Record(String),
     /// A pixel is NaN or infinite.
     #[error(
         "{what}: pixel ({column}, {row}) is {value:?}; find out why, such a picture is never a reference nor like one"

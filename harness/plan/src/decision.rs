@@ -494,13 +494,18 @@ impl Case<'_> {
         }
     }
 
+    /// Why an effect is off that stands on another, given the answer for that one; `None` if that one is on.
+    fn missing(&self, effect: Effect, (on, reason): Answer) -> Option<Answer> {
+        if self.request.without.has(effect) {
+            return Some(off(format!("{effect} is left out")));
+        }
+        (!on).then(|| off(format!("no {effect}: {reason}")))
+    }
+
     fn translucent_shadow(&self) -> Answer {
-        for (effect, (on, reason)) in [(Effect::Shadow, self.shadow()), (Effect::HalfSpace, self.half_space())] {
-            if self.request.without.has(effect) {
-                return off(format!("{effect} is left out"));
-            }
-            if !on {
-                return off(format!("no {effect}: {reason}"));
+        for (effect, answer) in [(Effect::Shadow, self.shadow()), (Effect::HalfSpace, self.half_space())] {
+            if let Some(missing) = self.missing(effect, answer) {
+                return missing;
             }
         }
         match self.rung {
@@ -575,13 +580,7 @@ impl Case<'_> {
 
     fn thickness_texture(&self) -> Answer {
         let found = self.image(TextureSlot::Thickness);
-        match self.cdrf() {
-            (true, _) if found.0 && self.request.without.has(Effect::Cdrf) => off("cdrf is left out"),
-            (false, reason) if found.0 => {
-                off(format!("{}, but no light spreads: {reason}", TextureSlot::Thickness.name()))
-            }
-            _ => found,
-        }
+        if found.0 { self.missing(Effect::Cdrf, self.cdrf()).unwrap_or(found) } else { found }
     }
 
     fn vertex_color(&self) -> Answer {
@@ -612,11 +611,8 @@ impl Case<'_> {
         let Some(lobe) = self.material.second_lobe else {
             return off("no secondLobe");
         };
-        if self.request.without.has(Effect::Microfacet) {
-            return off("microfacet is left out");
-        }
-        if let (false, reason) = self.microfacet() {
-            return off(format!("no highlights: {reason}"));
+        if let Some(missing) = self.missing(Effect::Microfacet, self.microfacet()) {
+            return missing;
         }
         if !self.rung.draws_images() {
             return off(format!("the rung {} draws the first lobe alone", self.rung));

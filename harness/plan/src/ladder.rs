@@ -54,17 +54,18 @@ const CDRF: &str = include_str!("../../../docs/measurements/lavapipe/cdrf.json")
 const TRANSLUCENT: &str = include_str!("../../../docs/measurements/lavapipe/translucent.json");
 const OPTICAL_PATH: &str = include_str!("../../../docs/measurements/lavapipe/optical_path.json");
 
-static COMMITTED: LazyLock<[Option<Ladder>; 6]> = LazyLock::new(|| {
-    [
-        (Technique::Convex, GEM),
-        (Technique::Concave, GEM),
-        (Technique::Cdrf, CDRF),
-        (Technique::Translucent, TRANSLUCENT),
-        (Technique::OpticalPath, OPTICAL_PATH),
-        (Technique::Diffusion, TRANSLUCENT),
-    ]
-    .map(|(technique, record)| Ladder::of_record(technique, record).ok())
-});
+/// The techniques that have a ladder, in their own order, and the committed reports.
+const REPORTS: [(Technique, &str); 6] = [
+    (Technique::Convex, GEM),
+    (Technique::Concave, GEM),
+    (Technique::Cdrf, CDRF),
+    (Technique::Translucent, TRANSLUCENT),
+    (Technique::OpticalPath, OPTICAL_PATH),
+    (Technique::Diffusion, TRANSLUCENT),
+];
+
+static COMMITTED: LazyLock<[Option<Ladder>; 6]> =
+    LazyLock::new(|| REPORTS.map(|(technique, record)| Ladder::of_record(technique, record).ok()));
 
 impl Ladder {
     /// Returns the committed ladder of a technique; `None` for a technique with a single rung.
@@ -192,12 +193,28 @@ impl Ladder {
 }
 
 /// A report of `cook cost`, as far as it is read here.
-#[derive(Deserialize)]
-struct Record {
+#[derive(Debug, Deserialize)]
+pub struct Record {
     rows: Vec<Row>,
 }
 
-#[derive(Deserialize)]
+impl Record {
+    /// Returns the committed report that a technique is judged by; `None` for a technique with a single rung.
+    #[must_use]
+    pub fn committed(technique: Technique) -> Option<Self> {
+        serde_json::from_str(REPORTS.get(technique as usize)?.1).ok()
+    }
+
+    /// Returns a measurement of a rung in a view, and the milliseconds of its frame; `None` if it was not taken or not
+    /// timed.
+    #[must_use]
+    pub fn timed(&self, rung: &str, view: &str, measure: &str) -> Option<(f64, f64)> {
+        let is_it = |row: &&Row| row.rung == rung && row.view == view && row.measure == measure;
+        self.rows.iter().find(is_it).and_then(|row| row.value.zip(row.ms))
+    }
+}
+
+#[derive(Debug, Deserialize)]
 struct Row {
     rung: String,
     view: String,

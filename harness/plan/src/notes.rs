@@ -5,7 +5,6 @@ use crate::{Geometry, Note, Objects, Request, Rung};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world};
 use std::f64::consts::PI;
 
@@ -101,7 +100,7 @@ impl Case<'_> {
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
         let draws = self.rung.draws_images();
-        let spreads = matches!(self.rung, Rung::Diffuse(of) if !of.is_lambert() && of != Reflectance::Blur);
+        let spreads = self.rung.spreads_by_curvature();
         let slots = [(TextureSlot::BaseColor, draws), (TextureSlot::Normal, draws), (TextureSlot::Thickness, spreads)];
         let lost = |(slot, drawn): &(TextureSlot, bool)| {
             !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)

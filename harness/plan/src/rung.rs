@@ -153,6 +153,11 @@ impl Rung {
         matches!(self, Self::Diffuse(_))
     }
 
+    /// Whether the rung spreads light over a surface by its curvature.
+    pub fn spreads_by_curvature(self) -> bool {
+        matches!(self, Self::Diffuse(of) if !of.is_lambert() && of != Reflectance::Blur)
+    }
+
     /// Returns how rays inside find facets; `None` if no light is followed inside.
     pub fn geometry_of_inside(self) -> Option<Geometry> {
         if let Self::Inside { geometry, .. } = self { Some(geometry) } else { None }

@@ -39,6 +39,31 @@ pub enum Curvature {
     Vertex,
 }
 
+impl Curvature {
+    /// All curvatures.
+    pub const ALL: [Self; 4] = [Self::Mean, Self::Towards, Self::Naive, Self::Vertex];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Towards => "towards",
+            Self::Naive => "naive",
+            Self::Vertex => "vertex",
+        }
+    }
+
+    /// Returns `CURVATURE_FORM` of the recipe.
+    pub(super) fn form(self) -> u32 {
+        match self {
+            Self::Mean => 0,
+            Self::Towards => 1,
+            Self::Naive => 2,
+            Self::Vertex => 3,
+        }
+    }
+}
+
 /// How far the shadows of bodies that scatter follow their light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowForm {
@@ -70,31 +95,6 @@ impl ShadowForm {
             Self::Soft => 0,
             Self::Colors => 1,
             Self::Through => 2,
-        }
-    }
-}
-
-impl Curvature {
-    /// All curvatures.
-    pub const ALL: [Self; 4] = [Self::Mean, Self::Towards, Self::Naive, Self::Vertex];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mean => "mean",
-            Self::Towards => "towards",
-            Self::Naive => "naive",
-            Self::Vertex => "vertex",
-        }
-    }
-
-    /// Returns `CURVATURE_FORM` of the recipe.
-    pub(super) fn form(self) -> u32 {
-        match self {
-            Self::Mean => 0,
-            Self::Towards => 1,
-            Self::Naive => 2,
-            Self::Vertex => 3,
         }
     }
 }

@@ -175,8 +175,8 @@ pub const BUILT_IN: [BuiltIn; 33] = [
     },
     BuiltIn {
         name: "vitrine",
-        description: "Clear stones, reflectance by curvature and diffusion in one picture: on a table of slate a diamond that disperses light, a ruby that does not, a ball of jade, \
-            a candle of paraffin and the figure of veined marble; a chain of clear glass prisms hangs from a bronze stand. Lit by a sun from \
+        description: "Clear stones, reflectance by curvature and diffusion in one picture: on a table of slate a diamond that \
+            disperses light, a ruby that does not, a ball of jade, a candle of paraffin and the figure of veined marble; a chain of clear glass prisms hangs from a bronze stand. Lit by a sun from \
             behind at the left, which shines through wax and marble, and a weak warm lamp.",
     },
 ];

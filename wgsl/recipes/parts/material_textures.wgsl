@@ -28,11 +28,11 @@ struct TexturePlace {
 // red, green and blue light spread in the material.
 @group(1) @binding(13) var normal_texture: texture_2d_array<f32>;
 @group(1) @binding(14) var normal_sampler: sampler;
+// Three floats per vertex, linear RGB.
+@group(1) @binding(15) var<storage, read> colors: array<f32>;
 // A share in green.
 @group(1) @binding(16) var thickness_texture: texture_2d<f32>;
 @group(1) @binding(17) var thickness_sampler: sampler;
-// Three floats per vertex, linear RGB.
-@group(1) @binding(15) var<storage, read> colors: array<f32>;
 
 fn texture_place(place: TexturePlace, uv: vec2f) -> vec2f {
     return vec2f(dot(place.u, vec3f(uv, 1.0f)), dot(place.v, vec3f(uv, 1.0f)));

@@ -1,11 +1,11 @@
 //! Arguments shared by `cook render` and `cook plan`: a scene, and how its objects are drawn.
 
 use super::Failure;
+use super::named::named;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
-use lapidary_scene::nearest::suggest;
 use lapidary_scene::{Environment, Scene};
 use std::path::PathBuf;
 
@@ -52,9 +52,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
 }
 
 fn parse_quality(text: &str) -> Result<Quality, String> {
-    let names = Quality::ALL.map(Quality::name);
-    let found = Quality::ALL.into_iter().find(|quality| quality.name() == text);
-    found.ok_or_else(|| format!("no such quality{}", suggest(text, &names)))
+    named("quality", text, Quality::ALL, Quality::name)
 }
 
 impl Asked {

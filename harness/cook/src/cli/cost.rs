@@ -1,5 +1,6 @@
 //! `cook cost`.
 
+use super::named::named;
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
 use lapidary_cook::cost::{
@@ -126,10 +127,7 @@ fn parse_rung(text: &str) -> Result<Rung, String> {
 }
 
 fn parse_view(text: &str) -> Result<views::View, String> {
-    let all = || views::VIEWS.into_iter().chain(views::CONCAVE);
-    let names: Vec<&str> = all().map(|view| view.name).collect();
-    let found = all().find(|view| view.name == text);
-    found.ok_or_else(|| format!("no such view{}", lapidary_scene::nearest::suggest(text, &names)))
+    named("view", text, views::VIEWS.into_iter().chain(views::CONCAVE), |view| view.name)
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {

@@ -2,6 +2,7 @@
 //! each technique's own.
 
 use super::asked::{Asked, refuse_without_meaning};
+use super::named::named;
 use super::{Failure, number};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
@@ -9,7 +10,6 @@ use lapidary_render::{
     Curvature, DiffuseOptions, DiffusionOptions, GemOptions, OpticalPathOptions, Settings, ShadowForm,
 };
 use lapidary_scene::Scene;
-use lapidary_scene::nearest::suggest;
 
 #[derive(clap::Args)]
 pub(super) struct Drawn {
@@ -139,15 +139,11 @@ fn parse_from(text: &str) -> Result<(f32, f32), String> {
 }
 
 fn parse_curvature(text: &str) -> Result<Curvature, String> {
-    let names = Curvature::ALL.map(Curvature::name);
-    let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
-    found.ok_or_else(|| format!("no such curvature{}", suggest(text, &names)))
+    named("curvature", text, Curvature::ALL, Curvature::name)
 }
 
 fn parse_shadows(text: &str) -> Result<ShadowForm, String> {
-    let names = ShadowForm::ALL.map(ShadowForm::name);
-    let found = ShadowForm::ALL.into_iter().find(|form| form.name() == text);
-    found.ok_or_else(|| format!("no such form of shadows{}", suggest(text, &names)))
+    named("form of shadows", text, ShadowForm::ALL, ShadowForm::name)
 }
 
 fn parse_positive(text: &str) -> Result<f32, String> {

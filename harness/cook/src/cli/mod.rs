@@ -13,6 +13,7 @@ mod drawn;
 mod frame;
 mod gallery;
 mod list;
+mod named;
 mod new;
 mod number;
 mod output;

@@ -1,6 +1,7 @@
 //! `cook render`.
 
 use super::drawn::{Drawn, Given, given, planned, tell};
+use super::named::named;
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_plan::{Note, Rung};
 use lapidary_reference::random_walk::mesh::{Boundary, Origin};
@@ -9,7 +10,6 @@ use lapidary_render as render;
 use lapidary_render::file::{self, Format};
 use lapidary_render::{ReferenceOptions, Settings, WalkOptions, WalkedPicture};
 use lapidary_scene::Scene;
-use lapidary_scene::nearest::suggest;
 use std::path::PathBuf;
 
 /// Renders a scene: a built-in by name, or a .glb or .gltf file.
@@ -88,9 +88,7 @@ impl Reference {
 }
 
 fn parse_origin(text: &str) -> Result<Origin, String> {
-    let names = Origin::ALL.map(Origin::name);
-    let found = Origin::ALL.into_iter().find(|origin| origin.name() == text);
-    found.ok_or_else(|| format!("no such end of a walk{}", suggest(text, &names)))
+    named("end of a walk", text, Origin::ALL, Origin::name)
 }
 
 impl Arguments {

@@ -7,11 +7,11 @@ use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
 use crate::exposure::best_exposure;
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects, Rung};
+use lapidary_plan::ladder::Record;
+use lapidary_plan::{Effect, Effects, Rung, Technique};
 use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
-use serde::Deserialize;
 
 /// A comparison of several scenes.
 #[derive(Debug)]
@@ -28,9 +28,9 @@ pub struct BesideWalks {
     scenes: &'static [&'static str],
     /// The ways of drawing, column by column; the difference of the last one is shown after the walks.
     looks: &'static [Look],
-    /// A ladder's committed report, and the measure whose distances and times the labels give. After it was measured
+    /// The technique whose committed report the labels take their figures from, and the measure. After it was measured
     /// again, the picture is out of date, and is compared as such.
-    record: (&'static str, &'static str),
+    record: (Technique, &'static str),
 }
 
 /// A way of drawing.
@@ -40,6 +40,8 @@ struct Look {
     rung: &'static str,
     /// Whether the law of a half space is on.
     law: bool,
+    /// Whether shadows are on that the rung has not by itself.
+    shadows: bool,
     /// The label.
     label: &'static str,
     /// Name of the report's row.
@@ -56,7 +58,7 @@ pub const STONE: BesideWalks = BesideWalks {
     technique: "optical_path",
     scenes: &["bunny", "dragon", "figure", "wax_bunny"],
     looks: &[plain("lambert-shadowed"), plain("godunov-128"), plain("diffusion-128")],
-    record: (include_str!("../../../../docs/measurements/lavapipe/translucent.json"), "walks"),
+    record: (Technique::Diffusion, "walks"),
 };
 
 /// A head of skin that is the same everywhere.
@@ -70,10 +72,16 @@ pub const HEAD: BesideWalks = BesideWalks {
     scenes: &["skin_head"],
     looks: &[
         Look { row: "`lambert-shadowed`", ..plain("lambert-shadowed") },
-        Look { row: "`blur --with shadow`", label: "blur, shadow", ..plain("blur") },
-        Look { row: "`drift --with half_space,shadow`", label: "drift, law, shadow", law: true, ..plain("drift") },
+        Look { row: "`blur --with shadow`", label: "blur, shadow", shadows: true, ..plain("blur") },
+        Look {
+            row: "`drift --with half_space,shadow`",
+            label: "drift, law, shadow",
+            law: true,
+            shadows: true,
+            ..plain("drift")
+        },
     ],
-    record: (include_str!("../../../../docs/measurements/lavapipe/cdrf.json"), "head"),
+    record: (Technique::Cdrf, "head"),
 };
 
 /// All comparisons.
@@ -81,31 +89,30 @@ pub const ALL: [&BesideWalks; 2] = [&STONE, &HEAD];
 
 /// Returns the look of a rung alone.
 const fn plain(rung: &'static str) -> Look {
-    Look { rung, law: false, label: rung, row: rung }
+    Look { rung, law: false, shadows: false, label: rung, row: rung }
 }
 
 impl BesideWalks {
     /// Renders the picture: encoded, and at half that size for its linear radiance.
     ///
     /// # Errors
-    /// Returns an error if a reference, a scene or the report does not load, or if the device fails.
+    /// Returns an error if a reference or a scene does not load or if the device fails.
     pub fn render(&self, gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
-        let record = self.record()?;
+        let (technique, measure) = self.record;
+        let record = Record::committed(technique);
         let mut frames = Vec::new();
         for scene_name in self.scenes {
             let Some(reference) = WalkedReference::of_scene(scene_name) else { continue };
-            let walks = reference.picture(gpu)?;
+            let mut walks = reference.picture(gpu)?;
             let scene = Scene::named(scene_name)?;
-            let mut difference = walks.clone();
             for look in self.looks {
                 let mut frame = exposed(gpu, &scene, &look.settings(), &walks)?;
-                difference = apart(gpu, &frame, &walks)?;
-                let figures = self.figures(&record, look, scene_name);
-                let figures = figures.map(|[distance, ms]| format!("{distance:.2}, {ms:.0} ms"));
+                let figures = record.as_ref().and_then(|record| record.timed(look.row, scene_name, measure));
+                let figures = figures.map(|(distance, ms)| format!("{distance:.2}, {ms:.0} ms"));
                 label(&mut frame, &[look.label, figures.as_deref().unwrap_or_default()]);
                 frames.push(frame);
             }
-            let mut walks = walks;
+            let mut difference = apart(gpu, &frames[frames.len() - 1], &walks)?;
             label(&mut walks, &["random walks", &format!("{} a pixel", reference.walks)]);
             label(&mut difference, &["difference"]);
             frames.extend([walks, difference]);
@@ -116,39 +123,9 @@ impl BesideWalks {
     }
 }
 
-/// What is read of a ladder's report.
-#[derive(Debug, Deserialize)]
-struct Record {
-    rows: Vec<Row>,
-}
-
-/// A measurement.
-#[derive(Debug, Deserialize)]
-struct Row {
-    rung: String,
-    view: String,
-    measure: String,
-    value: Option<f64>,
-    ms: Option<f64>,
-}
-
-impl BesideWalks {
-    fn record(&self) -> Result<Record, SnapshotError> {
-        serde_json::from_str(self.record.0).map_err(|error| SnapshotError::Record(error.to_string()))
-    }
-
-    /// Returns the distance from the walks and the milliseconds.
-    fn figures(&self, record: &Record, look: &Look, scene: &str) -> Option<[f64; 2]> {
-        let is_it = |row: &&Row| row.rung == look.row && row.view == scene && row.measure == self.record.1;
-        let row = record.rows.iter().find(is_it)?;
-        Some([row.value?, row.ms?])
-    }
-}
-
 impl Look {
     fn settings(&self) -> Settings {
-        let shadows = self.law || self.rung == "blur";
-        Settings { half_space: self.law, shadows, ..settings(self.rung) }
+        Settings { half_space: self.law, shadows: self.shadows, ..settings(self.rung) }
     }
 }
 
@@ -195,9 +172,10 @@ mod tests {
     #[test]
     fn every_look_is_in_its_record() {
         for of in ALL {
-            let record = of.record().expect("a report");
+            let (technique, measure) = of.record;
+            let record = Record::committed(technique).expect("a report");
             for (look, scene) in of.looks.iter().flat_map(|look| of.scenes.iter().map(move |scene| (look, scene))) {
-                assert!(of.figures(&record, look, scene).is_some(), "{scene}, {}", look.row);
+                assert!(record.timed(look.row, scene, measure).is_some(), "{scene}, {}", look.row);
                 assert!(WalkedReference::of_scene(scene).is_some());
             }
         }

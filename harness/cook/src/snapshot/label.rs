@@ -16,9 +16,9 @@ const SHADE: u8 = 225;
 pub(super) fn label(picture: &mut Picture, lines: &[&str]) {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let lines: Vec<&str> = lines.iter().copied().filter(|line| !line.is_empty()).collect();
-    let letters = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default();
-    let right = if letters > 0 { 2 * MARGIN + letters * get_raster_width(WEIGHT, HEIGHT) } else { 0 };
-    let below = if letters > 0 { 2 * MARGIN + lines.len() * HEIGHT.val() } else { 0 };
+    let Some(letters) = lines.iter().map(|line| line.chars().count()).max() else { return };
+    let right = 2 * MARGIN + letters * get_raster_width(WEIGHT, HEIGHT);
+    let below = 2 * MARGIN + lines.len() * HEIGHT.val();
     for row in 0..below.min(height) {
         for pixel in &mut picture.encoded[row * width..][..right.min(width)] {
             pixel[..3].iter_mut().for_each(|value| *value = (u32::from(*value) * GROUND / 255) as u8);

@@ -367,11 +367,12 @@ impl Shot {
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
         let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
-        let choices = format!("{from}{rung}{centre}{footprint}{outside}{law}{light}{curvature}{exposure}{samples}");
         let quality =
             if self.quality == Quality::default() { String::new() } else { format!(" --quality {}", self.quality) };
         let size = if self.side == PNG_SIDE { String::new() } else { format!(" --size {0}x{0}", self.side) };
-        let choices = format!("{quality}{choices}{size}");
+        let choices = format!(
+            "{quality}{from}{rung}{centre}{footprint}{outside}{law}{light}{curvature}{exposure}{samples}{size}"
+        );
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

@@ -1,7 +1,7 @@
 //! Diffusion through bodies, in whole pictures: near random walks, linear in the light, without the
 //! grid's pattern.
 
-use crate::pixels::rays;
+use crate::pixels::{furthest, rays};
 use glam::{DQuat, DVec3, Vec3};
 use lapidary_cook::cost::translucent;
 use lapidary_cook::exposure::{distance, exposed_distance};
@@ -98,8 +98,7 @@ fn forward_scattering_is_drawn_by_its_similar_matter() {
     let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
     let scene_of = |medium: &Medium| scene_of(sphere(8.0, 96), medium.clone(), lights.clone(), (85.0, 10.0));
     let [found, similar] = [&forward, &even].map(|medium| drawn(&scene_of(medium), "diffusion-64", 2 * side));
-    let differ = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
-    let most = found.linear.iter().zip(&similar.linear).map(differ).fold(0.0, f32::max);
+    let most = furthest(&found.linear, &similar.linear);
     let brightest = similar.linear.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
     assert!(most < 1e-4 * brightest, "{most} of {brightest}");
     let [evenly, forwards] = [&even, &forward].map(|medium| {

@@ -1,8 +1,15 @@
 //! Values of a picture's pixels, with the rays and places that they belong to.
 
 use glam::DVec3;
+use lapidary_assay::extremum::larger;
 use lapidary_render::Picture;
 use lapidary_scene::Scene;
+
+/// Returns the largest difference of the colours of two pictures' pixels.
+pub(crate) fn furthest(one: &[[f32; 4]], other: &[[f32; 4]]) -> f32 {
+    let apart = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, larger);
+    one.iter().zip(other).map(apart).fold(0.0, larger)
+}
 
 /// Returns, for each pixel, the unit direction of the camera ray through its centre, and its value.
 pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {

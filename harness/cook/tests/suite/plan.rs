@@ -536,12 +536,7 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
             other => other,
         }
     }
-    let groups: Vec<&str> = vitrine.objects.iter().map(group).fold(Vec::new(), |mut groups, group| {
-        if !groups.contains(&group) {
-            groups.push(group);
-        }
-        groups
-    });
+    let groups: BTreeSet<&str> = vitrine.objects.iter().map(group).collect();
     let subset = |kept: usize| {
         let is_kept = |object: &&Object| {
             groups.iter().position(|of| *of == group(object)).is_some_and(|place| kept >> place & 1 == 1)

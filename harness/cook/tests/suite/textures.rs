@@ -1,6 +1,7 @@
 //! Images of materials in the recipe `cdrf_shading`, on a square that the camera faces: colour against the
 //! texture's own lookup, and normals against the closed form of Lambert's law.
 
+use crate::pixels::furthest;
 use glam::{Vec2, Vec3};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
@@ -197,16 +198,12 @@ fn a_thickness_scales_how_far_light_spreads() {
             (medium.scattering, medium.absorption) = (medium.scattering / share, medium.absorption / share);
             draw(&scene, rung).linear
         };
-        let distance = |a: &[[f32; 4]], b: &[[f32; 4]]| {
-            let apart = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
-            a.iter().zip(b).map(apart).fold(0.0, f32::max)
-        };
         let (half, thin, plain) = (scaled(128.0 / 255.0), scaled(32.0 / 255.0), with(None));
         // The table's step beside the widest sigma is 1/256.
         let most = if rung.starts_with("table") { 2e-3 } else { 2e-5 };
         assert_eq!(with(Some(image(255, 255))), plain, "{rung}");
-        let found = distance(&with(Some(image(128, 128))), &half);
-        let apart = distance(&half, &plain).min(distance(&half, &thin));
+        let found = furthest(&with(Some(image(128, 128))), &half);
+        let apart = furthest(&half, &plain).min(furthest(&half, &thin));
         println!("{rung}: {found:.1e} off where the share makes {apart:.3}");
         assert!(found < most && apart > 0.02, "{rung}: {found} {apart}");
         // Around the ball u runs once: a pixel is of one share or of the other, but for a texel's width between them.
@@ -222,7 +219,7 @@ fn a_thickness_scales_how_far_light_spreads() {
         assert!(of_half.min(of_thin) > beside + covered * 35 / 100, "{rung}: {of_half} {of_thin} of {covered}");
         // Nothing spreads where the share is 0.
         let lambert = draw(&ball, "lambert").linear;
-        assert!(distance(&with(Some(image(0, 0))), &lambert) < most, "{rung}");
+        assert!(furthest(&with(Some(image(0, 0))), &lambert) < most, "{rung}");
     }
 }
 

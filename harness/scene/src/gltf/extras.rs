@@ -3,7 +3,8 @@
 //! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`]. It gives the
 //! refractive index and the dispersion; if the file states these as well, they must agree. `sigma0`
 //! is [`Material::sigma0`]. `scattering` and `absorption`, which require each other, and the
-//! optional `anisotropy` and `veins` are [`Material::medium`]. `secondLobe` is [`Material::second_lobe`]. `solver` is [`Material::solver`].
+//! optional `anisotropy` and `veins` are [`Material::medium`]. `secondLobe` is
+//! [`Material::second_lobe`]. `solver` is [`Material::solver`].
 //! Lengths are in world units: as with `attenuationDistance`, the scale of a node does not change
 //! them.
 
