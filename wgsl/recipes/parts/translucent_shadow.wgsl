@@ -47,8 +47,10 @@ fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: ve
     let path = TRANSLUCENT_SHADOW_WIDTH * max(free_path.x, max(free_path.y, free_path.z));
     // Taps are more than a texel apart.
     let widest = clamp(path, texel, TRANSLUCENT_SHADOW_WIDEST * size * texel);
-    let widths = clamp(TRANSLUCENT_SHADOW_WIDTH * free_path, vec3f(TRANSLUCENT_SHADOW_NARROWEST * widest), vec3f(widest));
-    let mean = (widths.x + widths.y + widths.z) / 3.0f;
+    var widths = clamp(TRANSLUCENT_SHADOW_WIDTH * free_path, vec3f(TRANSLUCENT_SHADOW_NARROWEST * widest), vec3f(widest));
+    if (SHADOW_FORM == SHADOW_FORM_SOFT) {
+        widths = vec3f((widths.x + widths.y + widths.z) / 3.0f);
+    }
     let spacing = TRANSLUCENT_SHADOW_SPACING * widest / texel;
     let middle = vec2f(0.5f * size);
     let nearest = round((place - middle) / spacing);
@@ -64,10 +66,7 @@ fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: ve
             let across = (at - place) * texel;
             let height = reflective_shadow_map_height(seen.xyz, position, normal);
             let way = dot(seen.xyz - position, toward_light);
-            var weight = vec3f(exp(-0.5f * dot(across, across) / (mean * mean)));
-            if (SHADOW_FORM != SHADOW_FORM_SOFT) {
-                weight = exp(-0.5f * dot(across, across) / (widths * widths));
-            }
+            let weight = exp(-0.5f * dot(across, across) / (widths * widths));
             weights += weight;
             sum.visible += weight * select(0.0f, 1.0f, height <= texel + TRANSLUCENT_SHADOW_SLOPE * length(across));
             sum.near += weight * clamp(vec3f(2.0f) - way / reach, vec3f(0.0f), vec3f(1.0f));
