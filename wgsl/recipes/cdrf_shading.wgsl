@@ -25,6 +25,9 @@ override SPREAD_FORM: u32 = 0u;
 override CURVATURE_FORM: u32 = 0u;
 // A second lobe of the highlights, as skin has. Called for by extras.lapidary.secondLobe, where there are highlights.
 override EFFECT_SECOND_LOBE: bool = false;
+// Some of the light does not enter, and leaves the surface as Lambert's law says. Called for by a diffuseTransmissionFactor between 0
+// and 1, or a diffuseTransmissionTexture, on a body that cdrf draws.
+override EFFECT_PARTIAL_TRANSMISSION: bool = false;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
 // texture_irradiance and texture_diffusion.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;
@@ -79,6 +82,9 @@ struct CdrfMaterial {
     base_color_place: TexturePlace,
     normal_place: TexturePlace,
     thickness_place: TexturePlace,
+    transmission_place: TexturePlace,
+    // Share of the light that enters, 0 to 1.
+    transmission: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -118,6 +124,7 @@ struct CdrfVertex {
     @location(9) normal_uv: vec2f,  //+normal_texture
     @location(10) color: vec3f,  //+vertex_color
     @location(11) thickness_uv: vec2f,  //+thickness_texture
+    @location(12) transmission_uv: vec2f,  //+transmission_texture
 }
 
 @vertex
@@ -159,6 +166,12 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         thickness_uv = texture_place(material.thickness_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
     }
     //+thickness_texture }
+    //+transmission_texture {
+    var transmission_uv = vec2f(0.0f);
+    if (EFFECT_TRANSMISSION_TEXTURE) {
+        transmission_uv = texture_place(material.transmission_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    }
+    //+transmission_texture }
     //+vertex_color {
     var color = vec3f(1.0f);
     if (EFFECT_VERTEX_COLOR) {
@@ -180,10 +193,12 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         normal_uv,  //+normal_texture
         color,  //+vertex_color
         thickness_uv,  //+thickness_texture
+        transmission_uv,  //+transmission_texture
     );
 }
 
-// The derivatives at a pixel, the curvature that follows from them, and the factor of the lengths by which light spreads.
+// The derivatives at a pixel, the curvature that follows from them, the factor of the lengths by which light spreads, and the
+// share of the light that enters.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
@@ -191,6 +206,7 @@ struct CdrfSurface {
     normal_y: vec3f,
     curvature: f32,
     thickness: f32,
+    transmission: f32,
 }
 
 // The surface at a pixel. Call it outside all branches: derivatives need the neighbouring pixels.
@@ -207,9 +223,16 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     }
     var thickness = 1.0f;
     if (EFFECT_THICKNESS_TEXTURE) {
-        thickness = textureSampleLevel(thickness_texture, thickness_sampler, input.thickness_uv, 0.0f).g;
+        thickness = textureSample(thickness_texture, thickness_sampler, input.thickness_uv).g;
     }
-    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness);
+    var transmission = 1.0f;
+    if (EFFECT_PARTIAL_TRANSMISSION) {
+        transmission = material.transmission;
+    }
+    if (EFFECT_TRANSMISSION_TEXTURE) {
+        transmission *= textureSample(transmission_texture, transmission_sampler, input.transmission_uv).a;
+    }
+    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness, transmission);
 }
 
 // The unit normal. If interpolation between opposite normals leaves no direction, the surface
@@ -422,6 +445,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         // Every width is a length times a curvature.
         let spread = surface.thickness * curvature;
         var reflectance = cdrf_reflectance(cosines, spread);
+        //+partial_transmission {
+        var opaque = vec3f(max(dot(normals.sharp, arrival.direction), 0.0f));
+        //+partial_transmission }
         //+half_space {
         var law = vec3f(1.0f);
         if (EFFECT_HALF_SPACE) {
@@ -437,16 +463,26 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
                 seen = law;
             }
             reflectance = cdrf_translucent(reflectance, seen, cosines, shadow, cosine_eye);
+            if (EFFECT_PARTIAL_TRANSMISSION) {
+                opaque *= shadow.visible;
+            }
             //+translucent_shadow }
         } else {  //+translucent_shadow
             if (EFFECT_SHADOW) {
                 let most = max(cosine, max(cosines.x, max(cosines.y, cosines.z)));
-                reflectance = cdrf_shadowed(reflectance, cosines, cdrf_visible(index, most, input.position, normal));
+                let visible = cdrf_visible(index, most, input.position, normal);
+                reflectance = cdrf_shadowed(reflectance, cosines, visible);
+                if (EFFECT_PARTIAL_TRANSMISSION) {
+                    opaque *= visible;
+                }
             }
             if (EFFECT_HALF_SPACE) {
                 reflectance *= law;
             }
         }  //+translucent_shadow
+        if (EFFECT_PARTIAL_TRANSMISSION) {
+            reflectance = mix(opaque, reflectance, surface.transmission);
+        }
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
         }
@@ -475,6 +511,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         }  //+normal_texture
         if (EFFECT_HALF_SPACE) {
             irradiance *= scattering_law_around(cosine_eye, material.law);
+        }
+        if (EFFECT_PARTIAL_TRANSMISSION) {
+            irradiance = mix(cdrf_around(harmonics_around(normals.sharp), vec3f(0.0f)), irradiance, surface.transmission);
         }
         received += irradiance;
     }
@@ -516,7 +555,7 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     }  //+texture_diffusion
     var base_color = material.base_color;
     if (EFFECT_BASE_COLOR_TEXTURE) {
-        base_color *= textureSampleLevel(base_color_texture, base_color_sampler, input.base_color_uv, 0.0f).rgb;
+        base_color *= textureSample(base_color_texture, base_color_sampler, input.base_color_uv).rgb;
     }
     if (EFFECT_VERTEX_COLOR) {
         base_color *= input.color;

@@ -153,7 +153,9 @@ impl Case<'_> {
             Effect::EnvironmentMap => self.environment_map(),
             Effect::BaseColorTexture => self.image(TextureSlot::BaseColor),
             Effect::NormalTexture => self.image(TextureSlot::Normal),
-            Effect::ThicknessTexture => self.thickness_texture(),
+            Effect::ThicknessTexture => self.on_light_that_spreads(self.image(TextureSlot::Thickness)),
+            Effect::PartialTransmission => self.partial_transmission(),
+            Effect::TransmissionTexture => self.transmission_texture(),
             Effect::VertexColor => self.vertex_color(),
             Effect::Microfacet => self.microfacet(),
             Effect::SecondLobe => self.second_lobe(),
@@ -578,9 +580,29 @@ impl Case<'_> {
         self.drawn_by_rung(format!("{} of {width} x {height} texels", slot.name()))
     }
 
-    fn thickness_texture(&self) -> Answer {
-        let found = self.image(TextureSlot::Thickness);
+    /// Returns an answer of something that changes how light spreads, or that it does not spread.
+    fn on_light_that_spreads(&self, found: Answer) -> Answer {
         if found.0 { self.missing(Effect::Cdrf, self.cdrf()).unwrap_or(found) } else { found }
+    }
+
+    fn partial_transmission(&self) -> Answer {
+        if self.is_gem() {
+            return off("clear bodies are drawn wholly clear");
+        }
+        let share = self.material.share_that_enters();
+        let image = self.image(TextureSlot::DiffuseTransmission);
+        let found = match (share < 1.0, image.0) {
+            (true, _) => self.drawn_by_rung(format!("diffuseTransmissionFactor {}", short(share))),
+            (false, true) => image,
+            (false, false) => off("all light enters"),
+        };
+        self.on_light_that_spreads(found)
+    }
+
+    fn transmission_texture(&self) -> Answer {
+        let found = self.image(TextureSlot::DiffuseTransmission);
+        let missing = self.missing(Effect::PartialTransmission, self.partial_transmission());
+        if found.0 { missing.unwrap_or(found) } else { found }
     }
 
     fn vertex_color(&self) -> Answer {

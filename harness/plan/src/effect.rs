@@ -93,6 +93,10 @@ effects! {
     NormalTexture = "normal_texture", "EFFECT_NORMAL_TEXTURE";
     /// Spread of light that varies over the surface, by an image.
     ThicknessTexture = "thickness_texture", "EFFECT_THICKNESS_TEXTURE";
+    /// Light that does not enter a scattering body, and is reflected as by an opaque one.
+    PartialTransmission = "partial_transmission", "EFFECT_PARTIAL_TRANSMISSION";
+    /// Share of the light that enters, which varies over the surface by an image.
+    TransmissionTexture = "transmission_texture", "EFFECT_TRANSMISSION_TEXTURE";
     /// Diffuse colour that varies from vertex to vertex.
     VertexColor = "vertex_color", "EFFECT_VERTEX_COLOR";
     /// Highlights of the lights on a rough surface.
@@ -132,7 +136,7 @@ impl FromStr for Effect {
 
 /// A set of effects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Effects(u32);
+pub struct Effects(u64);
 
 impl Effects {
     /// The empty set.
@@ -145,7 +149,7 @@ impl Effects {
     pub const fn of(effects: &[Effect]) -> Self {
         let (mut set, mut index) = (0, 0);
         while index < effects.len() {
-            set |= 1 << effects[index] as u32;
+            set |= 1 << effects[index] as u64;
             index += 1;
         }
         Self(set)

@@ -90,6 +90,15 @@ pub enum Note {
         /// What is not drawn.
         what: Vec<&'static str>,
     },
+    /// Scattering bodies that some of the light does not enter, under a rung that lets all of it in.
+    AllEnters {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+        /// The share that enters, by the first one's material.
+        share: f32,
+    },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
         /// The objects concerned.
@@ -191,6 +200,10 @@ impl fmt::Display for Note {
                 "{objects}: rung `{rung}` does not draw {}, so that the factor alone is seen",
                 what.join(" and ")
             ),
+            Self::AllEnters { objects, rung, share } => write!(
+                f,
+                "{objects}: diffuseTransmissionFactor {share} is drawn as 1 by rung `{rung}`; only those of `cdrf_shading` that spread light draw it"
+            ),
             Self::NotClear { objects, asked, instead } => write!(
                 f,
                 "{objects}: rung `{asked}` is for clear stones, and the material lets nothing through, so drawn by `{instead}`"
@@ -242,6 +255,10 @@ mod tests {
             of(
                 Note::FactorsAlone { objects: objects(1), rung, what: vec!["baseColorTexture", "normalTexture"] },
                 "does not draw baseColorTexture and normalTexture",
+            ),
+            of(
+                Note::AllEnters { objects: objects(2), rung, share: 0.25 },
+                "diffuseTransmissionFactor 0.25 is drawn as 1",
             ),
             of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
             of(Note::NothingInView, "--from"),

@@ -86,6 +86,10 @@ impl Case<'_> {
         if !what.is_empty() {
             notes.push(Note::FactorsAlone { objects: objects.clone(), rung, what });
         }
+        let share = self.object.material.share_that_enters();
+        if self.object.material.scatters() && share < 1.0 && !rung.spreads_by_curvature() {
+            notes.push(Note::AllEnters { objects: objects.clone(), rung, share });
+        }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
             notes.push(Note::HardEdges { objects: objects.clone(), rung });
@@ -101,7 +105,12 @@ impl Case<'_> {
         let Object { mesh, material, .. } = self.object;
         let draws = self.rung.draws_images();
         let spreads = self.rung.spreads_by_curvature();
-        let slots = [(TextureSlot::BaseColor, draws), (TextureSlot::Normal, draws), (TextureSlot::Thickness, spreads)];
+        let slots = [
+            (TextureSlot::BaseColor, draws),
+            (TextureSlot::Normal, draws),
+            (TextureSlot::Thickness, spreads),
+            (TextureSlot::DiffuseTransmission, spreads || !material.scatters()),
+        ];
         let lost = |(slot, drawn): &(TextureSlot, bool)| {
             !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
         };

@@ -182,7 +182,11 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record =
         record.within("base_color_place", |record| textures::place(record, material.base_color_texture.as_ref()));
     let record = record.within("normal_place", |record| textures::place(record, material.normal_texture.as_ref()));
-    record.within("thickness_place", |record| textures::place(record, material.thickness_texture.as_ref()))
+    let record =
+        record.within("thickness_place", |record| textures::place(record, material.thickness_texture.as_ref()));
+    let record = record.with("transmission", material.share_that_enters());
+    record
+        .within("transmission_place", |record| textures::place(record, material.diffuse_transmission_texture.as_ref()))
 }
 
 /// Returns the material's widths, made safe.

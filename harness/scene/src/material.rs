@@ -233,6 +233,13 @@ impl Material {
         self.sigma0.is_some() || self.medium.is_some()
     }
 
+    /// Returns the share of the light that enters a scattering body, without its image. A body may scatter by its medium
+    /// alone: then all of it enters.
+    #[must_use]
+    pub fn share_that_enters(&self) -> f32 {
+        if self.diffuse_transmission > 0.0 { self.diffuse_transmission } else { 1.0 }
+    }
+
     /// Whether light passes straight through, unscattered.
     #[must_use]
     pub fn is_clear(&self) -> bool {

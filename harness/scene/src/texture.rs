@@ -124,11 +124,27 @@ impl Encoding {
         };
         Vec4::new(color[0], color[1], color[2], share(alpha))
     }
+
+    /// Returns the texel whose linear value is nearest to this; channels below 0 or above 1 count as these.
+    #[must_use]
+    pub fn encoded(self, linear: Vec4) -> [u8; 4] {
+        let code = |light: f32| match self {
+            Self::Srgb => srgb_code(f64::from(light.clamp(0.0, 1.0))),
+            Self::Linear => light,
+        };
+        let [red, green, blue, alpha] = linear.to_array();
+        [code(red), code(green), code(blue), alpha].map(|share| (255.0 * share).round() as u8)
+    }
 }
 
 /// The transfer function of IEC 61966-2-1:1999, from code value to light.
 fn srgb(code: f64) -> f32 {
     (if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }) as f32
+}
+
+/// The inverse of [`srgb`].
+fn srgb_code(light: f64) -> f32 {
+    (if light <= 0.0031308 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }) as f32
 }
 
 impl Wrap {

@@ -1,8 +1,11 @@
-// material_textures: what the images of a material hold at a point: its colour, the slopes of its surface, and how thick it is.
+// material_textures: what the images of a material hold at a point: its colour, the slopes of its surface, how thick it is, and
+//   whether light enters.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
 //   2, 2011, for normals blurred per colour; Mikkelsen, "Surface Gradient-Based Bump Mapping Framework",
 //   JCGT 9 (2020), for tangents from derivatives.
+//
+// Call what samples an image outside all branches: the level of the image follows from the derivatives of its coordinates.
 //
 // A recipe adds: nothing.
 
@@ -12,6 +15,8 @@ override EFFECT_BASE_COLOR_TEXTURE: bool = false;
 override EFFECT_NORMAL_TEXTURE: bool = false;
 // How far light spreads inside varies over the surface. Called for by a material's thicknessTexture on a body that cdrf draws.
 override EFFECT_THICKNESS_TEXTURE: bool = false;
+// Where light enters varies over the surface. Called for by a material's diffuseTransmissionTexture on a body that cdrf draws.
+override EFFECT_TRANSMISSION_TEXTURE: bool = false;
 // The diffuse colour varies from vertex to vertex. Called for by a mesh's COLOR_0.
 override EFFECT_VERTEX_COLOR: bool = false;
 
@@ -33,6 +38,9 @@ struct TexturePlace {
 // A share in green.
 @group(1) @binding(16) var thickness_texture: texture_2d<f32>;
 @group(1) @binding(17) var thickness_sampler: sampler;
+// A share in alpha.
+@group(1) @binding(18) var transmission_texture: texture_2d<f32>;
+@group(1) @binding(19) var transmission_sampler: sampler;
 
 fn texture_place(place: TexturePlace, uv: vec2f) -> vec2f {
     return vec2f(dot(place.u, vec3f(uv, 1.0f)), dot(place.v, vec3f(uv, 1.0f)));
@@ -58,7 +66,7 @@ fn texture_tangents(normal: vec3f, position_x: vec3f, position_y: vec3f, uv_x: v
 
 // The unit normal of a layer of the texture, at coordinates of its image.
 fn texture_normal(layer: u32, uv: vec2f, normal: vec3f, tangents: TextureTangents) -> vec3f {
-    let slopes = textureSampleLevel(normal_texture, normal_sampler, uv, layer, 0.0f).xy;
+    let slopes = textureSample(normal_texture, normal_sampler, uv, layer).xy;
     let up = sqrt(max(1.0f - dot(slopes, slopes), 0.0f));
     return normalize(slopes.x * tangents.u - slopes.y * tangents.v + max(up, 1e-3f) * normal);
 }

@@ -96,6 +96,8 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         object.mesh.colors = vec![Vec3::ONE; object.mesh.positions.len()];
         object.material.thickness = 1.0;
         object.material.thickness_texture = object.material.base_color_texture.clone();
+        object.material.diffuse_transmission = 1.0;
+        object.material.diffuse_transmission_texture = object.material.base_color_texture.clone();
     }
     let mut veined = spotlit("dragon")?;
     for object in &mut veined.objects {
@@ -208,11 +210,18 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::BaseColorTexture,
                 Effect::NormalTexture,
                 Effect::ThicknessTexture,
+                Effect::PartialTransmission,
+                Effect::TransmissionTexture,
                 Effect::VertexColor,
                 Effect::Microfacet,
                 Effect::SecondLobe,
             ],
-            stands_on: &[(Effect::SecondLobe, Effect::Microfacet), (Effect::ThicknessTexture, Effect::Cdrf)],
+            stands_on: &[
+                (Effect::SecondLobe, Effect::Microfacet),
+                (Effect::ThicknessTexture, Effect::Cdrf),
+                (Effect::PartialTransmission, Effect::Cdrf),
+                (Effect::TransmissionTexture, Effect::PartialTransmission),
+            ],
         },
         Case {
             name: "vitrine, table and ruby",

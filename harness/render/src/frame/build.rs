@@ -4,6 +4,9 @@ use super::*;
 use crate::record::Record;
 use crate::shader::ShaderError;
 use lapidary_gpu::Gpu;
+use lapidary_scene::{Encoding, Texels};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Source of a graphics pipeline.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +33,8 @@ pub struct Builder<'gpu> {
     sources: Vec<String>,
     object: String,
     gpu: Option<&'gpu Gpu>,
+    /// Textures of images, by where their texels stand in memory and what these are taken for.
+    images: HashMap<(usize, Encoding), Texture>,
 }
 
 /// A texture whose parts are read back to the host.
@@ -142,7 +147,35 @@ impl<'gpu> Builder<'gpu> {
     ) -> Texture {
         // A host copies its contents there.
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        Texture(self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents }))
+        Texture(self.resource(what, ResourceKind::Texture { size, levels: 1, dimension, format, usage, contents }))
+    }
+
+    /// Adds a texture of two dimensions with all its mip levels. `size` is width, height, and number of layers.
+    pub(crate) fn mipped(
+        &mut self,
+        what: &str,
+        format: wgpu::TextureFormat,
+        size: [u32; 3],
+        (levels, contents): (u32, Vec<u8>),
+    ) -> Texture {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let (dimension, contents) = (wgpu::TextureDimension::D2, Contents::Bytes(contents));
+        Texture(self.resource(what, ResourceKind::Texture { size, levels, dimension, format, usage, contents }))
+    }
+
+    /// Returns the texture of an image as these encoding's colours or data; the first use adds it, and it then belongs to all objects.
+    pub(crate) fn image(
+        &mut self,
+        (texels, encoding): (&Arc<Texels>, Encoding),
+        make: impl FnOnce(&mut Self) -> Texture,
+    ) -> Texture {
+        let key = (Arc::as_ptr(texels).addr(), encoding);
+        if let Some(known) = self.images.get(&key) {
+            return *known;
+        }
+        let made = self.of_object("", make);
+        self.images.insert(key, made);
+        made
     }
 
     /// Adds a texture that can be drawn to, with `usage` in addition. `size` is width, height, and
@@ -156,9 +189,10 @@ impl<'gpu> Builder<'gpu> {
     ) -> Texture {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | usage;
         let dimension = wgpu::TextureDimension::D2;
-        Texture(
-            self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents: Contents::Zeros }),
-        )
+        Texture(self.resource(
+            what,
+            ResourceKind::Texture { size, levels: 1, dimension, format, usage, contents: Contents::Zeros },
+        ))
     }
 
     /// Adds a linear sampler.

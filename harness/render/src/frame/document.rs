@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Version of the format; readers of other versions should refuse it.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Reason why a frame could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -74,7 +74,7 @@ struct ResourceRow {
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum ResourceFields {
     Buffer { bytes: u64, layout: Option<LayoutRow> },
-    Texture { dimension: &'static str, format: String, size: [u32; 3] },
+    Texture { dimension: &'static str, format: String, size: [u32; 3], levels: u32 },
     Sampler { filter: &'static str, address: [&'static str; 2] },
 }
 
@@ -245,13 +245,14 @@ fn resource_row((place, resource): (usize, &Resource)) -> ResourceRow {
                 contents,
             )
         }
-        ResourceKind::Texture { size, dimension, format, usage, contents } => {
+        ResourceKind::Texture { size, levels, dimension, format, usage, contents } => {
             let dimension = match dimension {
                 wgpu::TextureDimension::D1 => "1d",
                 wgpu::TextureDimension::D2 => "2d",
                 wgpu::TextureDimension::D3 => "3d",
             };
-            let kind = ResourceFields::Texture { dimension, format: format_name(*format), size: *size };
+            let kind =
+                ResourceFields::Texture { dimension, format: format_name(*format), size: *size, levels: *levels };
             (kind, usage.iter_names().map(|(name, _)| name).collect(), contents)
         }
         ResourceKind::Sampler { filter, address } => {

@@ -315,11 +315,12 @@ fn made(gpu: &Gpu, resource: &Resource) -> Made {
                 mapped_at_creation: false,
             }),
         }),
-        ResourceKind::Texture { size: [width, height, depth_or_array_layers], dimension, format, usage, contents } => {
+        ResourceKind::Texture { size, levels, dimension, format, usage, contents } => {
+            let [width, height, depth_or_array_layers] = *size;
             let descriptor = wgpu::TextureDescriptor {
                 label,
-                size: wgpu::Extent3d { width: *width, height: *height, depth_or_array_layers: *depth_or_array_layers },
-                mip_level_count: 1,
+                size: wgpu::Extent3d { width, height, depth_or_array_layers },
+                mip_level_count: *levels,
                 sample_count: 1,
                 dimension: *dimension,
                 format: *format,
@@ -328,7 +329,7 @@ fn made(gpu: &Gpu, resource: &Resource) -> Made {
             };
             Made::Texture(match contents {
                 Contents::Bytes(contents) => {
-                    let order = wgpu::util::TextureDataOrder::LayerMajor;
+                    let order = wgpu::util::TextureDataOrder::MipMajor;
                     device.create_texture_with_data(&gpu.queue, &descriptor, order, contents)
                 }
                 Contents::Zeros | Contents::LeftOut => device.create_texture(&descriptor),
@@ -339,6 +340,10 @@ fn made(gpu: &Gpu, resource: &Resource) -> Made {
                 label,
                 mag_filter: *filter,
                 min_filter: *filter,
+                mipmap_filter: match filter {
+                    wgpu::FilterMode::Linear => wgpu::MipmapFilterMode::Linear,
+                    wgpu::FilterMode::Nearest => wgpu::MipmapFilterMode::Nearest,
+                },
                 address_mode_u: *u,
                 address_mode_v: *v,
                 ..wgpu::SamplerDescriptor::default()

@@ -111,22 +111,24 @@ pub enum ResourceKind {
         /// arrays.
         layout: Option<(&'static str, &'static StructLayout)>,
     },
-    /// A texture with one mip level and one sample per texel.
+    /// A texture with one sample per texel.
     Texture {
         /// Width, height, and depth or number of layers, in texels.
         size: [u32; 3],
+        /// Number of mip levels, each half as wide and half as high as the one before, rounded down, and at least 1.
+        levels: u32,
         /// One, two or three dimensions.
         dimension: wgpu::TextureDimension,
         /// Format of a texel.
         format: wgpu::TextureFormat,
         /// Allowed usages.
         usage: wgpu::TextureUsages,
-        /// Initial contents, row by row without gaps, layer by layer.
+        /// Initial contents, row by row without gaps, layer by layer, level by level.
         contents: Contents,
     },
     /// A sampler.
     Sampler {
-        /// Filter for magnification and minification.
+        /// Filter for magnification and minification, and between mip levels.
         filter: wgpu::FilterMode,
         /// Address modes along u and v.
         address: [wgpu::AddressMode; 2],
@@ -169,12 +171,20 @@ impl Resource {
     pub fn bytes(&self) -> u64 {
         match &self.kind {
             ResourceKind::Buffer { size, .. } => *size,
-            ResourceKind::Texture { size, format, .. } => {
-                size.iter().map(|side| u64::from(*side)).product::<u64>() * u64::from(texel_bytes(*format))
+            ResourceKind::Texture { size, levels, format, .. } => {
+                let [width, height, layers] = *size;
+                let texels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height) * u64::from(layers);
+                let texels: u64 = (0..*levels).map(|level| texels(level_size([width, height], level))).sum();
+                texels * u64::from(texel_bytes(*format))
             }
             ResourceKind::Sampler { .. } => 0,
         }
     }
+}
+
+/// Returns the width and height of a mip level of a texture of this width and height.
+pub(crate) fn level_size(size: [u32; 2], level: u32) -> [u32; 2] {
+    size.map(|side| side.checked_shr(level).unwrap_or_default().max(1))
 }
 
 /// Returns the bytes of a texel. Only formats without blocks of several texels are used; depth has

@@ -4,4 +4,4 @@
 use crate::TextureSlot;
 
 /// Textures that are loaded and not drawn: their factor is drawn alone.
-pub(super) const TEXTURES: &[TextureSlot] = &[TextureSlot::Transmission, TextureSlot::DiffuseTransmission];
+pub(super) const TEXTURES: &[TextureSlot] = &[TextureSlot::Transmission];

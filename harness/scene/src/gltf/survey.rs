@@ -206,9 +206,6 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
         note(diffuse, "`diffuseTransmissionFactor` beside a transmission", "not drawn");
     } else if diffuse_transmission > 0.0 && transmission == 0.0 {
         match &material.medium {
-            Some(_) if is_share(diffuse_transmission) => {
-                note(diffuse, "`diffuseTransmissionFactor` between 0 and 1", "drawn as if all light went in");
-            }
             Some(_) => {}
             None if material.thickness == 0.0 => {
                 note(diffuse, "`diffuseTransmissionFactor` without a thickness", "a thin wall is drawn opaque");

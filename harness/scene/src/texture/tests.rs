@@ -118,3 +118,15 @@ fn a_transform_that_is_not_finite_is_a_problem() {
         assert!(Texture { transform, ..small() }.problem().unwrap().contains("transform"));
     }
 }
+
+/// Every code comes back from its light, and light between two codes is the nearer one.
+#[test]
+fn texels_are_encoded_as_they_are_decoded() {
+    for encoding in [Encoding::Srgb, Encoding::Linear] {
+        for code in 0..=255u8 {
+            let texel = [code, 255 - code, code / 2, code];
+            assert_eq!(encoding.encoded(encoding.decoded(texel)), texel, "{encoding:?}");
+        }
+        assert_eq!(encoding.encoded(Vec4::new(-1.0, 2.0, f32::INFINITY, -0.0)), [0, 255, 255, 0]);
+    }
+}

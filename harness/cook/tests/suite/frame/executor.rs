@@ -32,7 +32,7 @@ struct Host<'a> {
 pub fn run(device: &Device, queue: &Queue, folder: &Path) -> BTreeMap<String, Picture> {
     let text = std::fs::read_to_string(folder.join("frame.json")).expect("frame.json");
     let frame: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(frame["version"], 3);
+    assert_eq!(frame["version"], 4);
     let mut host = Host { device, queue, resources: Vec::new(), pipelines: Vec::new(), groups: Vec::new() };
     host.resources = list(&frame["resources"]).iter().map(|row| host.resource(row, folder)).collect();
     host.pipelines = list(&frame["pipelines"]).iter().map(|row| host.pipeline(row, folder)).collect();
@@ -100,7 +100,7 @@ impl Host<'_> {
                 let descriptor = TextureDescriptor {
                     label: None,
                     size: Extent3d { width, height, depth_or_array_layers },
-                    mip_level_count: 1,
+                    mip_level_count: number(&row["levels"]) as u32,
                     sample_count: 1,
                     dimension: named(&row["dimension"], &[("2d", TextureDimension::D2), ("3d", TextureDimension::D3)]),
                     format: format(&row["format"]),
@@ -108,10 +108,28 @@ impl Host<'_> {
                     view_formats: &[],
                 };
                 let texture = self.device.create_texture(&descriptor);
-                if let Some(texels) = contents {
-                    let bytes_per_row = Some(width * texel_bytes(descriptor.format));
-                    let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: Some(height) };
-                    self.queue.write_texture(texture.as_image_copy(), &texels, layout, descriptor.size);
+                let mut rest = contents.as_deref().unwrap_or_default();
+                for mip_level in (0..descriptor.mip_level_count).take_while(|_| !rest.is_empty()) {
+                    let size = Extent3d {
+                        width: (width >> mip_level).max(1),
+                        height: (height >> mip_level).max(1),
+                        ..descriptor.size
+                    };
+                    let bytes_per_row = size.width * texel_bytes(descriptor.format);
+                    let (level, others) =
+                        rest.split_at((bytes_per_row * size.height * size.depth_or_array_layers) as usize);
+                    let layout = TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(bytes_per_row),
+                        rows_per_image: Some(size.height),
+                    };
+                    self.queue.write_texture(
+                        TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() },
+                        level,
+                        layout,
+                        size,
+                    );
+                    rest = others;
                 }
                 Resource::Texture(texture)
             }
@@ -121,6 +139,10 @@ impl Host<'_> {
                 Resource::Sampler(self.device.create_sampler(&SamplerDescriptor {
                     mag_filter: filter,
                     min_filter: filter,
+                    mipmap_filter: named(
+                        &row["filter"],
+                        &[("linear", MipmapFilterMode::Linear), ("nearest", MipmapFilterMode::Nearest)],
+                    ),
                     address_mode_u: named(&row["address"][0], &modes),
                     address_mode_v: named(&row["address"][1], &modes),
                     ..Default::default()

@@ -1,4 +1,5 @@
 use super::*;
+use lapidary_scene::{Encoding, TextureTransform};
 use std::sync::Arc;
 
 /// Returns an image of normals that tilt along u as a wave with this many texels.
@@ -35,11 +36,8 @@ fn a_blur_leaves_of_a_wave_what_a_gaussian_leaves() {
 fn layers_are_the_image_and_a_blur_for_each_colour() {
     let texture = waves(32, 8.0);
     let layers = Normals::of(&texture, 1.0).layers(texture.wrap, Vec3::new(4.0, 1.0, 0.0));
-    assert_eq!((layers.size, layers.bytes.len()), ([32, 32], 4 * 32 * 32 * 4));
-    let amplitude = |layer: usize| {
-        let bytes = &layers.bytes[layer * 4096..(layer + 1) * 4096];
-        bytes.chunks_exact(4).map(|texel| f16::from_le_bytes([texel[0], texel[1]]).to_f32()).fold(0.0, f32::max)
-    };
+    assert_eq!((layers.size, layers.layers.len()), ([32, 32], 4));
+    let amplitude = |layer: usize| layers.layers[layer].iter().map(|slopes| slopes.x).fold(0.0, f32::max);
     let [sharp, red, green, blue] = [0, 1, 2, 3].map(amplitude);
     assert!(red < green && green < blue && blue == sharp && sharp > 0.45, "{red} {green} {blue} {sharp}");
 }
