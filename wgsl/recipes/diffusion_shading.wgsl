@@ -10,6 +10,8 @@
 // Light through the body. If off, only light that falls on the surface itself is sent back. Called for
 // by extras.lapidary.scattering and absorption.
 override EFFECT_DIFFUSION: bool = true;
+// Lamps stand inside the body, and their light is scattered on its way out. Called for by a lamp that the mesh encloses.
+override EFFECT_LAMP_INSIDE: bool = false;
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
@@ -59,6 +61,8 @@ struct DiffusionBody {
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
 @group(1) @binding(4) var<storage, read> packed: array<vec2u>;
 @group(1) @binding(5) var<storage, read> density: array<f32>;
+// For each light 1 if it is a lamp inside this body, else 0.
+@group(1) @binding(6) var<storage, read> enclosed: array<u32>;
 
 struct DiffusionVertex {
     @builtin(position) clip: vec4f,
@@ -456,6 +460,46 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
     return sum;
 }
 
+//+lamp_inside {
+// Light of a lamp inside the body that is scattered towards the eye for the first time, along the way inside from a point: radiance
+// for an albedo of 4 pi.
+fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, inside: DiffusionWay) -> vec3f {
+    let spacing = body.grid.spacing;
+    var sum = vec3f(0.0f);
+    var gone = vec3f(0.0f);
+    var near = vec3f(0.0f);
+    var before = 0.0f;
+    var last = inside.surface;
+    for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
+        var reached = 0.0f;
+        var dense = inside.surface;
+        if (end > 0u) {
+            reached = inside.ends[end - 1u];
+            dense = inside.densities[end - 1u];
+        }
+        let way = (light.place - (position - reached * spacing * toward_eye)) / spacing;
+        // The grid knows nothing finer than half a spacing. Light falls off by the square of the distance as if by
+        // an optical depth of its logarithm.
+        let squared = max(dot(way, way), 0.25f);
+        let density = select(last, dense, dense > 0.0f);
+        let far = min(body.extinction * (density * sqrt(squared)) + log(4.0f * squared), vec3f(30.0f));
+        if (end > 0u) {
+            let thickness = body.extinction * (last * (reached - before));
+            sum += light_power(light, normalize(way)) * exp(-gone) * vec3f(
+                diffusion_unscattered(thickness.x, near.x, far.x),
+                diffusion_unscattered(thickness.y, near.y, far.y),
+                diffusion_unscattered(thickness.z, near.z, far.z),
+            );
+            gone += thickness;
+        }
+        near = far;
+        before = reached;
+        last = dense;
+    }
+    return 4.0f / (spacing * spacing) * sum;
+}
+//+lamp_inside }
+
 @fragment
 fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
     let toward_eye = normalize(view.eye - input.position);
@@ -503,6 +547,11 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         if (light == counted) {
             continue;
         }
+        if (EFFECT_LAMP_INSIDE) {
+            if (enclosed[light] != 0u) {
+                continue;
+            }
+        }
         let visible = shadow_in_view(layer, input.position, normal);
         if (visible < 0.0f) {
             continue;
@@ -543,6 +592,19 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
             }
         }
     }
+    //+diffusion {
+    if (EFFECT_DIFFUSION) {
+        //+lamp_inside {
+        if (EFFECT_LAMP_INSIDE) {
+            for (var light = 0u; light < arrayLength(&lights); light++) {
+                if (enclosed[light] != 0u) {
+                    sent += 0.07957747f * albedo * diffusion_single_of_lamp(lights[light], input.position, back, inside);
+                }
+            }
+        }
+        //+lamp_inside }
+    }
+    //+diffusion }
     if (EFFECT_ENVIRONMENT) {
         let law = vec3f(
             diffusion_law_around(cosine_eye, body.gamma.x),

@@ -5,8 +5,9 @@
 // requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
 // parts: lights, light_views, diffusion_nodes, tiles
 //
-// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, then
-// diffusion_source_finish with a workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
+// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, for lamps inside
+// diffusion_source_lamp with 2 cells^2 invocations for each light, and diffusion_source_finish with a workgroup for each of
+// the `tiles`, as the recipe diffusion_cells lists them.
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -15,6 +16,8 @@ override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 override EFFECT_ENVIRONMENT: bool = true;
 // The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
 override EFFECT_DIELECTRIC: bool = false;
+// Lamps stand inside the body, and send their light through it from there. Called for by a lamp that the mesh encloses.
+override EFFECT_LAMP_INSIDE: bool = false;
 
 // Light that fills one voxel's face, as a number of units. Light is added up in whole numbers, so that
 // its order makes no difference; sixteen times as much on every side of a voxel still fits.
@@ -49,6 +52,8 @@ struct DiffusionSource {
 @group(1) @binding(5) var<storage, read> entering: array<u32>;
 // Tiles of 4 x 4 x 4 voxels that hold matter.
 @group(1) @binding(6) var<storage, read> tiles: array<u32>;
+// For each light 1 if it is a lamp inside this body, else 0.
+@group(1) @binding(7) var<storage, read> enclosed: array<u32>;
 
 // The eight nodes around a point, and their shares in what lies between them.
 struct DiffusionAround {
@@ -60,7 +65,8 @@ struct DiffusionAround {
     depth: f32,
 }
 
-// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface.
+// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface; a negative
+// depth says that the nodes know it best.
 fn diffusion_around(place: vec3f, below: f32, cells: u32) -> DiffusionAround {
     let last = f32(cells - 1u);
     let low = floor(place - 0.5f);
@@ -93,7 +99,11 @@ fn diffusion_around(place: vec3f, below: f32, cells: u32) -> DiffusionAround {
     let scale = select(0.0f, 1.0f / max(whole, 1e-12f), whole > 0.0f);
     depth *= scale;
     let variance = max(square * scale - depth * depth, 0.0f);
-    let slope = diffusion_slope(below - depth, variance, depth - shallowest, deepest - depth);
+    var further = below - depth;
+    if (EFFECT_LAMP_INSIDE) {
+        further = select(further, 0.0f, below < 0.0f);
+    }
+    let slope = diffusion_slope(further, variance, depth - shallowest, deepest - depth);
     for (var corner = 0u; corner < 8u; corner++) {
         around.weights[corner] *= scale * max(1.0f + slope * (depths[corner] - depth), 0.0f);
     }
@@ -147,6 +157,64 @@ fn diffusion_entering(texel: vec3u, position: vec3f, toward_light: vec3f) -> vec
     return normalize(toward_light / source.index + (inside - cosine / source.index) * normal);
 }
 
+// Sends light straight on into the body from a place on its surface, in voxel spacings from the grid's corner, or from one inside,
+// and adds what is scattered to the nodes along the way. `back` points against the way, `cosine` is its cosine with the
+// surface's normal, -1 from inside; `energy` is what all scattering makes of the light, in units of one that fills a voxel's face.
+fn diffusion_march(entry: vec3f, back: vec3f, cosine: f32, energy: vec3f) {
+    let cells = source.grid.cells;
+    var gone = vec3f(0.0f);
+    var way = 0.0f;
+    var entered = false;
+    var local = 1.0f;
+    for (var step = 0u; step < 1024u; step++) {
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
+            // The surface may pass a voxel that holds no matter, and so no density: then that of the next counts.
+            let next = diffusion_density(entry - (way + 0.5f) * back, local);
+            local = diffusion_density(entry - (way + 1e-3f) * back, next);
+        }
+        // Steps are an optical depth long, in the densest channel of which anything is left.
+        let left = select(vec3f(0.0f), source.extinction, gone < vec3f(DIFFUSION_RAY_DEPTH));
+        let densest = max(left.x, max(left.y, left.z));
+        let length = min(0.75f, 1.0f / max(densest * local, 1e-6f));
+        // Where the mean of what is scattered along the step lies.
+        let middle = way + length * (0.5f - 0.083f * densest * local * length);
+        let place = entry - middle * back;
+        let inside = diffusion_filled(place);
+        entered = entered || inside;
+        // The surface cuts voxels, so that a ray may begin beside the first filled one.
+        if ((!inside && (entered || middle > 1.2f)) || min(gone.x, min(gone.y, gone.z)) >= DIFFUSION_RAY_DEPTH) {
+            break;
+        }
+        var thickness = source.extinction * (local * length);
+        thickness = select(thickness, vec3f(2.0f * DIFFUSION_OPAQUE), gone + thickness >= vec3f(DIFFUSION_RAY_DEPTH));
+        var below = middle * cosine;
+        if (EFFECT_LAMP_INSIDE) {
+            below = select(below, -1.0f, cosine < 0.0f);
+        }
+        let around = diffusion_around(place, below, cells);
+        var depth = below;
+        if (EFFECT_LAMP_INSIDE) {
+            depth = select(below, around.depth, below < 0.0f);
+        }
+        var given = vec3f(0.0f);
+        for (var channel = 0u; channel < 3u; channel++) {
+            given[channel] = energy[channel] * diffusion_scattered(gone[channel], thickness[channel])
+                * diffusion_profile(depth, around.depth, source.milne[channel] / max(local, DIFFUSION_THINNEST));
+        }
+        for (var corner = 0u; corner < 8u; corner++) {
+            let node = around.voxels[corner];
+            for (var channel = 0u; channel < 3u; channel++) {
+                let units = u32(given[channel] * around.weights[corner] * DIFFUSION_LIGHT + 0.5f);
+                if (units > 0u) {
+                    atomicAdd(&loads[3u * node + channel], units);
+                }
+            }
+        }
+        gone += thickness;
+        way += length;
+    }
+}
+
 @compute @workgroup_size(8, 8)
 fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     let size = textureDimensions(maps).x;
@@ -159,9 +227,14 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
     // The map also shows other bodies.
     let entry = voxelization_local(source.grid, seen.xyz);
-    let cells = source.grid.cells;
-    if (any(entry < vec3f(0.0f)) || any(entry > vec3f(f32(cells)))) {
+    if (any(entry < vec3f(0.0f)) || any(entry > vec3f(f32(source.grid.cells)))) {
         return;
+    }
+    if (EFFECT_LAMP_INSIDE) {
+        // It sees the body from inside.
+        if (enclosed[views[texel.z].light] != 0u) {
+            return;
+        }
     }
     let view = views[texel.z].view;
     let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
@@ -193,50 +266,33 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
             energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), gamma, DIFFUSION_MILNE);
         }
     }  //+dielectric
-    var gone = vec3f(0.0f);
-    var way = 0.0f;
-    var entered = false;
-    var local = 1.0f;
-    for (var step = 0u; step < 1024u; step++) {
-        if (EFFECT_EXTINCTION_PER_VOXEL) {
-            // The surface may pass a voxel that holds no matter, and so no density: then that of the next counts.
-            let next = diffusion_density(entry - (way + 0.5f) * back, local);
-            local = diffusion_density(entry - (way + 1e-3f) * back, next);
+    diffusion_march(entry, back, cosine, energy);
+}
+
+//+lamp_inside {
+// Unit vectors of a spiral over the sphere, as evenly spread as their number allows.
+fn diffusion_ray(index: u32, count: u32) -> vec3f {
+    let height = 1.0f - (2.0f * f32(index) + 1.0f) / f32(count);
+    // The golden angle as a share of 2^32; the product keeps the share of a whole turn.
+    let turn = 6.2831853f * (f32((index * 2654435769u) >> 8u) / 16777216.0f);
+    return vec3f(sqrt(max(1.0f - height * height, 0.0f)) * vec2f(cos(turn), sin(turn)), height);
+}
+//+lamp_inside }
+
+@compute @workgroup_size(64)
+fn diffusion_source_lamp(@builtin(global_invocation_id) ray: vec3u) {
+    //+lamp_inside {
+    if (EFFECT_LAMP_INSIDE) {
+        let count = 2u * source.grid.cells * source.grid.cells;
+        if (ray.x < count && enclosed[ray.y] != 0u) {
+            let back = diffusion_ray(ray.x, count);
+            let spacing = source.grid.spacing;
+            let share = light_power(lights[ray.y], back) * (12.566371f / (f32(count) * spacing * spacing)) / source.largest;
+            let energy = share * (1.0f - source.gamma) * (1.0f + source.gamma);
+            diffusion_march(voxelization_local(source.grid, lights[ray.y].place), back, -1.0f, energy);
         }
-        // Steps are an optical depth long, in the densest channel of which anything is left.
-        let left = select(vec3f(0.0f), source.extinction, gone < vec3f(DIFFUSION_RAY_DEPTH));
-        let densest = max(left.x, max(left.y, left.z));
-        let length = min(0.75f, 1.0f / max(densest * local, 1e-6f));
-        // Where the mean of what is scattered along the step lies.
-        let middle = way + length * (0.5f - 0.083f * densest * local * length);
-        let place = entry - middle * back;
-        let inside = diffusion_filled(place);
-        entered = entered || inside;
-        // The surface cuts voxels, so that a ray may begin beside the first filled one.
-        if ((!inside && (entered || middle > 1.2f)) || min(gone.x, min(gone.y, gone.z)) >= DIFFUSION_RAY_DEPTH) {
-            break;
-        }
-        var thickness = source.extinction * (local * length);
-        thickness = select(thickness, vec3f(2.0f * DIFFUSION_OPAQUE), gone + thickness >= vec3f(DIFFUSION_RAY_DEPTH));
-        let below = middle * cosine;
-        let around = diffusion_around(place, below, cells);
-        var given = vec3f(0.0f);
-        for (var channel = 0u; channel < 3u; channel++) {
-            given[channel] = energy[channel] * diffusion_scattered(gone[channel], thickness[channel])
-                * diffusion_profile(below, around.depth, source.milne[channel] / max(local, DIFFUSION_THINNEST));
-        }
-        for (var corner = 0u; corner < 8u; corner++) {
-            let node = around.voxels[corner];
-            for (var channel = 0u; channel < 3u; channel++) {
-                let units = u32(given[channel] * around.weights[corner] * DIFFUSION_LIGHT + 0.5f);
-                if (units > 0u) {
-                    atomicAdd(&loads[3u * node + channel], units);
-                }
-            }
-        }
-        gone += thickness;
-        way += length;
     }
+    //+lamp_inside }
 }
 
 @compute @workgroup_size(64)

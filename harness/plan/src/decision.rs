@@ -4,6 +4,7 @@
 use super::casting::{self, Casting};
 use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
+use super::enclosed;
 use super::numbers::{short, triple};
 use super::quality::Chosen;
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
@@ -144,6 +145,7 @@ impl Case<'_> {
                 self.along_a_way().map_or_else(off, |()| on("light also goes through what is thinner than a voxel"))
             }
             Effect::Color => self.color(),
+            Effect::LampInside => self.lamp_inside(),
             Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
             Effect::Shadow => self.shadow(),
             Effect::TranslucentShadow => self.translucent_shadow(),
@@ -396,6 +398,17 @@ impl Case<'_> {
 
     fn diffusion(&self) -> Answer {
         self.through(matches!(self.rung, Rung::Diffusion(_)))
+    }
+
+    fn lamp_inside(&self) -> Answer {
+        if let Some(missing) = self.missing(Effect::Diffusion, self.diffusion()) {
+            return missing;
+        }
+        match enclosed::count(self.object, &self.scene.lights) {
+            0 => off("no lamp stands inside"),
+            1 => on("a lamp stands inside"),
+            many => on(format!("{many} lamps stand inside")),
+        }
     }
 
     /// Returns `Ok` if light is followed through the body on voxels, else the reason why not.

@@ -69,6 +69,8 @@ effects! {
     OpticalPath = "optical_path", "EFFECT_OPTICAL_PATH";
     /// Light through a body, by the diffusion of its fluence.
     Diffusion = "diffusion", "EFFECT_DIFFUSION";
+    /// Lamps inside a body through which light diffuses.
+    LampInside = "lamp_inside", "EFFECT_LAMP_INSIDE";
     /// Voxels touched by the surface, in addition to those whose centre is inside.
     Surface = "surface", "EFFECT_SURFACE";
     /// Path cost that differs between colours.

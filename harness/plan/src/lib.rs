@@ -20,6 +20,7 @@ pub mod casting;
 mod choice;
 mod decision;
 mod effect;
+pub mod enclosed;
 pub mod ladder;
 mod note;
 mod notes;

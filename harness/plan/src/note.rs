@@ -99,6 +99,13 @@ pub enum Note {
         /// The share that enters, by the first one's material.
         share: f32,
     },
+    /// Scattering bodies with a lamp inside, under a rung that shows nothing of its light.
+    LampInside {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+    },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
         /// The objects concerned.
@@ -204,6 +211,10 @@ impl fmt::Display for Note {
                 f,
                 "{objects}: diffuseTransmissionFactor {share} is drawn as 1 by rung `{rung}`; only those of `cdrf_shading` that spread light draw it"
             ),
+            Self::LampInside { objects, rung } => write!(
+                f,
+                "{objects}: a lamp stands inside, and rung `{rung}` shows nothing of its light; give the body a rung such as `diffusion-64`"
+            ),
             Self::NotClear { objects, asked, instead } => write!(
                 f,
                 "{objects}: rung `{asked}` is for clear stones, and the material lets nothing through, so drawn by `{instead}`"
@@ -260,6 +271,7 @@ mod tests {
                 Note::AllEnters { objects: objects(2), rung, share: 0.25 },
                 "diffuseTransmissionFactor 0.25 is drawn as 1",
             ),
+            of(Note::LampInside { objects: objects(1), rung }, "a rung such as `diffusion-64`"),
             of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
             of(Note::NothingInView, "--from"),
             of(

@@ -1,7 +1,7 @@
 //! Warnings before a scene is drawn: bodies and lights that no technique can render faithfully.
 
 use super::{Decisions, thickness};
-use crate::{Geometry, Note, Objects, Request, Rung};
+use crate::{Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
@@ -89,6 +89,10 @@ impl Case<'_> {
         let share = self.object.material.share_that_enters();
         if self.object.material.scatters() && share < 1.0 && !rung.spreads_by_curvature() {
             notes.push(Note::AllEnters { objects: objects.clone(), rung, share });
+        }
+        let scatters = self.object.material.scatters() && !matches!(rung, Rung::Diffusion(_));
+        if scatters && enclosed::count(self.object, &self.scene.lights) > 0 {
+            notes.push(Note::LampInside { objects: objects.clone(), rung });
         }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {

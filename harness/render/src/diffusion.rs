@@ -7,23 +7,24 @@ mod levels;
 mod source;
 mod tiles;
 
+use super::RenderError;
 use super::density::Densities;
 use super::light_maps::{LightMaps, Lit};
+use super::light_views;
 use super::lighting::Lighting;
 use super::mesh_buffers::{MeshBuffers, ShapeBuffers, Shapes};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::stage::Stage;
 use super::variant::{Drawn, Part};
-use super::{RenderError, Settings};
 use crate::frame::{Bound, Buffer, Builder, Executor, Frame, PipelineId, PipelineSource};
 use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use cells::Cells;
 use glam::Vec3;
 use lapidary_gpu::GpuError;
-use lapidary_plan::{Effect, Note};
-use lapidary_scene::{Bounds, Density, Material, Object};
+use lapidary_plan::{Effect, Note, casting, enclosed};
+use lapidary_scene::{Bounds, Density, Light, Material, Object};
 use levels::Levels;
 use source::Source;
 use std::ops::Range;
@@ -86,8 +87,8 @@ pub(super) fn pass(
     cells: u32,
     source: &str,
 ) -> Result<ScenePass, RenderError> {
-    let LightMaps { mut maps, lit, largest } = LightMaps::of(builder, lighting, part, cells)?;
-    let largest = largest.max(lighting.largest_around());
+    let LightMaps { mut maps, lit, .. } = LightMaps::of(builder, lighting, part, cells)?;
+    let around = lighting.largest_around();
     let harmonics = lighting.has_environment().then(|| lighting.harmonics(builder));
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
@@ -102,8 +103,7 @@ pub(super) fn pass(
         })?;
         let mut shared = lighting.shared(builder, pipeline)?;
         shared.extend([(4, lit.views.into()), (5, lit.maps)]);
-        let add =
-            Add { pipeline, constants: &constants, cells, lit: &lit, largest, harmonics, settings: part.settings };
+        let add = Add { pipeline, constants: &constants, cells, lit: &lit, around, harmonics, part };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
             let (body, of_body) =
@@ -124,11 +124,19 @@ struct Add<'a> {
     constants: &'a [(&'a str, f64)],
     cells: u32,
     lit: &'a Lit,
-    /// Irradiance that counts as 1, for each channel.
-    largest: Vec3,
+    /// The largest irradiance from all around.
+    around: Vec3,
     /// The environment's harmonics; `None` if it is left out.
     harmonics: Option<Buffer>,
-    settings: &'a Settings,
+    part: &'a Part<'a>,
+}
+
+/// What a body gets from the lights.
+struct Received {
+    /// Irradiance that counts as 1, for each channel.
+    largest: Vec3,
+    /// For each light 1 if it is a lamp inside the body, else 0; `None` if none is.
+    enclosed: Option<Buffer>,
 }
 
 impl Add<'_> {
@@ -147,21 +155,43 @@ impl Add<'_> {
         let shape = shapes.of(builder, name, drawn.object)?;
         let buffers = MeshBuffers::of(builder, shape, drawn.object)?;
         maps.add(builder, name, &buffers)?;
+        let received = self.received(builder, drawn, grid);
         let of_body = if decisions.has(Effect::Diffusion) {
-            Some(self.diffusion(builder, drawn, grid, matter, &shape)?)
+            Some(self.diffusion(builder, drawn, (grid, matter), &shape, &received)?)
         } else {
             None
         };
-        let record = builder.record("material", record_of(grid, material, matter, self.largest));
+        let record = builder.record("material", record_of(grid, material, matter, received.largest));
         let MeshBuffers { shape: ShapeBuffers { positions, indices, vertices }, normals } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
         if let Some(of_body) = &of_body {
             resources.push((4, of_body.levels.packed.into()));
             resources.extend(of_body.densities.as_ref().map(|densities| (5, densities.buffer.into())));
+            resources.extend(received.enclosed.map(|enclosed| (6, enclosed.into())));
         }
         let group = builder.bind(self.pipeline, 1, &resources);
         Ok((Body { name: name.clone(), groups: vec![group], vertices, instances: 1 }, of_body))
+    }
+
+    /// Returns what a body gets from the lights.
+    fn received(&self, builder: &mut Builder<'_>, drawn: &Drawn<'_>, grid: VoxelGrid) -> Received {
+        let Drawn { object, decisions, .. } = drawn;
+        let inside = if decisions.has(Effect::LampInside) {
+            enclosed::lamps(object, self.part.lights)
+        } else {
+            vec![false; self.part.lights.len()]
+        };
+        let (within, outside): (Vec<_>, Vec<_>) =
+            self.part.lights.iter().zip(&inside).partition(|(_, inside)| **inside);
+        let outside: Vec<Light> = outside.into_iter().map(|(light, _)| *light).collect();
+        let of_maps = light_views::largest_irradiance(&outside, casting::bounds(object));
+        let of_lamps = within.into_iter().map(|(lamp, _)| source::of_lamp(lamp, grid));
+        let largest = of_lamps.fold(of_maps.max(self.around), Vec3::max);
+        let words: Vec<u32> = inside.into_iter().map(u32::from).collect();
+        let enclosed =
+            decisions.has(Effect::LampInside).then(|| builder.storage("lamps inside", bytemuck::cast_slice(&words)));
+        Received { largest, enclosed }
     }
 
     /// Returns the buffers and passes of light that diffuses through a body.
@@ -169,9 +199,9 @@ impl Add<'_> {
         &self,
         builder: &mut Builder<'_>,
         drawn: &Drawn<'_>,
-        grid: VoxelGrid,
-        matter: Matter,
+        (grid, matter): (VoxelGrid, Matter),
         mesh: &ShapeBuffers,
+        received: &Received,
     ) -> Result<BodyDiffusion, RenderError> {
         let Drawn { object: Object { mesh: shape, material, .. }, name, decisions } = drawn;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
@@ -179,13 +209,13 @@ impl Add<'_> {
         let tiles = Tiles::new(builder, grid.cells, 0);
         let densities = Densities::new(builder, grid, density, tiles.places())?;
         let of_voxel = densities.as_ref().map(|densities| densities.buffer);
-        let of_body = cells::Body { matter, material, largest: self.largest, harmonics: self.harmonics };
+        let of_body = cells::Body { matter, material, largest: received.largest, harmonics: self.harmonics };
         let cells = Cells::new(builder, grid, (shape, mesh), self.constants, of_body, (tiles, of_voxel))?;
-        let levels = Levels::new(builder, grid, &cells, self.settings.diffusion)?;
+        let levels = Levels::new(builder, grid, &cells, self.part.settings.diffusion)?;
         let source = Source::new(
             builder,
             grid,
-            (self.lit, self.largest),
+            (self.lit, received.largest),
             matter,
             &source::Buffers {
                 nodes: cells.nodes,
@@ -193,6 +223,7 @@ impl Add<'_> {
                 density: of_voxel,
                 right: levels.right(),
                 entering: cells.entering,
+                enclosed: received.enclosed.map(|flags| (flags, self.part.lights.len() as u32)),
                 tiles,
             },
             self.constants,

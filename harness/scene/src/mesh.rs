@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 
+use super::Bounds;
 use super::normals::{Averaging, Cofactors, shared_normals};
 
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
@@ -156,6 +157,23 @@ impl Mesh {
             let corner = |k: usize| self.positions.get(triangle[k] as usize).copied();
             Some([corner(0)?, corner(1)?, corner(2)?])
         })
+    }
+
+    /// Whether a closed surface goes around a point: by the solid angle under which its triangles are seen from there (Van
+    /// Oosterom and Strackee, 1983). Of an open surface, whether it covers more than half of what the point sees. A point that
+    /// is not finite is enclosed by nothing.
+    #[must_use]
+    pub fn encloses(&self, point: Vec3) -> bool {
+        let Bounds { min, max } = Bounds::of(self.positions.iter().copied());
+        if !(point.cmpge(min).all() && point.cmple(max).all()) {
+            return false;
+        }
+        let half_angle = |corners: [Vec3; 3]| {
+            let [a, b, c] = corners.map(|corner| (corner - point).as_dvec3());
+            let [x, y, z] = [a, b, c].map(|way| way.length());
+            a.dot(b.cross(c)).atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+        };
+        self.triangles().map(half_angle).sum::<f64>().abs() > std::f64::consts::PI
     }
 
     /// Returns the enclosed volume, positive if the triangles wind counter-clockwise seen from

@@ -33,6 +33,16 @@ struct LightArrival {
     irradiance: vec3f,
 }
 
+// Radiant intensity of a lamp, or irradiance of a sun; `direction` is the unit vector towards it.
+fn light_power(light: Light, direction: vec3f) -> vec3f {
+    var power = light.power;
+    if (EFFECT_SPOT) {
+        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);
+        power *= share * share;
+    }
+    return power;
+}
+
 // Light that arrives from one light. Exactly at the position of a point light there is no
 // direction, and nothing arrives.
 fn light_arrival(light: Light, position: vec3f) -> LightArrival {
@@ -42,10 +52,5 @@ fn light_arrival(light: Light, position: vec3f) -> LightArrival {
         return LightArrival(vec3f(0.0f), vec3f(0.0f));
     }
     let direction = way * inverseSqrt(squared);
-    var power = light.power;
-    if (EFFECT_SPOT) {
-        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);
-        power *= share * share;
-    }
-    return LightArrival(direction, power / mix(1.0f, squared, light.point));
+    return LightArrival(direction, light_power(light, direction) / mix(1.0f, squared, light.point));
 }

@@ -99,6 +99,9 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         object.material.diffuse_transmission = 1.0;
         object.material.diffuse_transmission_texture = object.material.base_color_texture.clone();
     }
+    let mut lantern = one("wax")?;
+    let position = lantern.bounds().centre();
+    lantern.lights.push(Light::Point { position, intensity: Vec3::ONE });
     let mut veined = spotlit("dragon")?;
     for object in &mut veined.objects {
         object.material.roughness = 0.3;
@@ -269,6 +272,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::Spot,
             ],
             stands_on: &[(Effect::ExtinctionPerVoxel, Effect::Diffusion)],
+        },
+        Case {
+            name: "wax with a lamp inside",
+            scene: lantern,
+            settings: settings("diffusion-64"),
+            effects: &[Effect::Diffusion, Effect::LampInside],
+            stands_on: &[(Effect::LampInside, Effect::Diffusion)],
         },
     ])
 }

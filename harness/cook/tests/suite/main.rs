@@ -27,6 +27,7 @@ mod gem;
 mod hard_cases;
 mod instances;
 #[cfg(unix)]
+mod lamp_inside;
 mod launcher;
 mod optical_path;
 mod optical_path_shading;

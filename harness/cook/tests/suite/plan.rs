@@ -213,6 +213,9 @@ fn cases() -> Vec<Case> {
     thick.objects[0].material.thickness = 1.0;
     let shares = |texture: Texture| Texture { encoding: Encoding::Linear, ..texture };
     thick.objects[0].material.thickness_texture = thick.objects[0].material.base_color_texture.clone().map(shares);
+    let mut lantern = one("wax");
+    let position = lantern.bounds().centre();
+    lantern.lights.push(Light::Point { position, intensity: Vec3::ONE });
     let mut partial = one("head");
     partial.objects[0].material.diffuse_transmission = 0.5;
     let mut inlaid = partial.clone();
@@ -311,6 +314,12 @@ fn cases() -> Vec<Case> {
                 vec!["voxelization", "optical_path_density", "diffusion_cells", "diffusion_source", "diffusion_solve"],
                 vec!["voxelization", "densities", "diffusion_cells", "diffusion_source", "diffusion_solve"],
             ],
+        ),
+        case(
+            Effect::LampInside,
+            lantern,
+            of_rung("diffusion-16"),
+            [vec!["lamps inside"], vec!["diffusion_source"], vec![]],
         ),
         case(Effect::Surface, one("bunny"), tiled(), [vec!["surface voxels"], vec![], vec![]]),
         case(
@@ -492,6 +501,7 @@ fn what_is_off_says_why() {
     assert_eq!(off(&unlit, &dark, Effect::Diffusion), "no light");
     assert_eq!(off(&matched, &of_rung("diffusion-16"), Effect::Dielectric), "ior 1: nothing reflects");
     assert_eq!(off(&one("bunny"), &settings, Effect::ExtinctionPerVoxel), "density the same everywhere");
+    assert_eq!(off(&one("bunny"), &of_rung("diffusion-16"), Effect::LampInside), "no lamp stands inside");
     let mut grey = one("bunny");
     for medium in grey.objects.iter_mut().filter_map(|object| object.material.medium.as_mut()) {
         medium.scattering = Vec3::splat(2.0);

@@ -248,7 +248,10 @@ fn what_is_left_of_an_effect_is_seen() {
     for (right, wrong) in [
         ("squared < 1.1754944e-38f", "squared < 1.1754942e-38f"),
         ("received += part", "received -= part"),
-        ("return LightArrival(direction, power /", "return LightArrival(direction, (power + 0.0f) /"),
+        (
+            "return LightArrival(direction, light_power(light, direction) /",
+            "return LightArrival(direction, (light_power(light, direction) + 0.0f) /",
+        ),
     ] {
         let planted = without.replace(right, wrong);
         assert_ne!(planted, without, "{right}");
