@@ -100,7 +100,7 @@ impl Host<'_> {
                 let descriptor = TextureDescriptor {
                     label: None,
                     size: Extent3d { width, height, depth_or_array_layers },
-                    mip_level_count: number(&row["levels"]) as u32,
+                    mip_level_count: number(&row["levels"]),
                     sample_count: 1,
                     dimension: named(&row["dimension"], &[("2d", TextureDimension::D2), ("3d", TextureDimension::D3)]),
                     format: format(&row["format"]),
