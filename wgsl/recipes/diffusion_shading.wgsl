@@ -485,7 +485,7 @@ fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, in
         let far = min(body.extinction * (density * sqrt(squared)) + log(4.0f * squared), vec3f(30.0f));
         if (end > 0u) {
             let thickness = body.extinction * (last * (reached - before));
-            sum += light_power(light, normalize(way)) * exp(-gone) * vec3f(
+            sum += light_power(light, way * inverseSqrt(max(dot(way, way), 1e-12f))) * exp(-gone) * vec3f(
                 diffusion_unscattered(thickness.x, near.x, far.x),
                 diffusion_unscattered(thickness.y, near.y, far.y),
                 diffusion_unscattered(thickness.z, near.z, far.z),

@@ -33,7 +33,8 @@ struct DiffusionSource {
     milne: vec3f,
     // The root of 1 - albedo, in each channel.
     gamma: vec3f,
-    // The irradiance that counts as 1: at least the greatest that arrives anywhere.
+    // The irradiance that counts as 1: at least the greatest that arrives at the body, and as much that the light of all lamps
+    // inside fills a voxel's face sixteen times.
     largest: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
@@ -231,7 +232,7 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
         return;
     }
     if (EFFECT_LAMP_INSIDE) {
-        // It sees the body from inside.
+        // What it sees through a hole, or of another body, is beyond the walls.
         if (enclosed[views[texel.z].light] != 0u) {
             return;
         }

@@ -90,7 +90,7 @@ pub enum Note {
         /// What is not drawn.
         what: Vec<&'static str>,
     },
-    /// Scattering bodies that some of the light does not enter, under a rung that lets all of it in.
+    /// Scattering bodies that some of the light does not enter, under a rung that does not draw this share.
     AllEnters {
         /// The objects concerned.
         objects: Objects,
@@ -209,7 +209,7 @@ impl fmt::Display for Note {
             ),
             Self::AllEnters { objects, rung, share } => write!(
                 f,
-                "{objects}: diffuseTransmissionFactor {share} is drawn as 1 by rung `{rung}`; only those of `cdrf_shading` that spread light draw it"
+                "{objects}: rung `{rung}` draws no diffuseTransmissionFactor between 0 and 1, here {share}; only rungs that spread light by curvature do"
             ),
             Self::LampInside { objects, rung } => write!(
                 f,
@@ -267,10 +267,7 @@ mod tests {
                 Note::FactorsAlone { objects: objects(1), rung, what: vec!["baseColorTexture", "normalTexture"] },
                 "does not draw baseColorTexture and normalTexture",
             ),
-            of(
-                Note::AllEnters { objects: objects(2), rung, share: 0.25 },
-                "diffuseTransmissionFactor 0.25 is drawn as 1",
-            ),
+            of(Note::AllEnters { objects: objects(2), rung, share: 0.25 }, "between 0 and 1, here 0.25"),
             of(Note::LampInside { objects: objects(1), rung }, "a rung such as `diffusion-64`"),
             of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
             of(Note::NothingInView, "--from"),

@@ -58,6 +58,12 @@ fn add(notes: &mut Vec<Note>, note: Note) {
         (Note::NotClear { objects, instead, .. }, Note::NotClear { instead: other, .. }) if instead == other => {
             Some(objects)
         }
+        (Note::AllEnters { objects, rung, share }, Note::AllEnters { rung: other, share: others, .. })
+            if (*rung, *share) == (*other, *others) =>
+        {
+            Some(objects)
+        }
+        (Note::LampInside { objects, rung }, Note::LampInside { rung: other, .. }) if rung == other => Some(objects),
         _ => None,
     });
     match known {

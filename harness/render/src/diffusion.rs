@@ -186,8 +186,9 @@ impl Add<'_> {
             self.part.lights.iter().zip(&inside).partition(|(_, inside)| **inside);
         let outside: Vec<Light> = outside.into_iter().map(|(light, _)| *light).collect();
         let of_maps = light_views::largest_irradiance(&outside, casting::bounds(object));
-        let of_lamps = within.into_iter().map(|(lamp, _)| source::of_lamp(lamp, grid));
-        let largest = of_lamps.fold(of_maps.max(self.around), Vec3::max);
+        // All of them may stand in one voxel.
+        let of_lamps: Vec3 = within.into_iter().map(|(lamp, _)| source::of_lamp(lamp, grid)).sum();
+        let largest = of_maps.max(self.around).max(of_lamps);
         let words: Vec<u32> = inside.into_iter().map(u32::from).collect();
         let enclosed =
             decisions.has(Effect::LampInside).then(|| builder.storage("lamps inside", bytemuck::cast_slice(&words)));

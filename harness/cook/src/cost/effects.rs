@@ -293,8 +293,9 @@ impl Case {
         };
         let mut frames = vec![("none".to_owned(), without(&[]))];
         frames.extend(self.effects.iter().map(|effect| {
-            let under = self.stands_on.iter().find(|(upper, _)| upper == effect).map(|(_, under)| *under);
-            let kept: Vec<Effect> = under.into_iter().chain([*effect]).collect();
+            let below = |of: &Effect| self.stands_on.iter().find(|(upper, _)| upper == of).map(|(_, under)| *under);
+            let kept: Vec<Effect> = std::iter::successors(Some(*effect), below).collect();
+            let under = below(effect);
             (under.map_or_else(|| effect.to_string(), |under| format!("{effect} on {under}")), without(&kept))
         }));
         frames.push(("all".to_owned(), without(self.effects)));

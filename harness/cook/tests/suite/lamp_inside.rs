@@ -130,10 +130,11 @@ fn a_white_ball_sends_out_all_that_its_lamp_does() {
             }
             let share = sum / count as f32 * PI as f32 / intensity / (1.0 - (-extinction).exp());
             println!("extinction {extinction}, {rung}: {share:.3} of the light that collides");
-            // By the fluence t + z below a plane diffusion sends out 1.033 of its flux, of which the angles' factor leaves 1.019;
-            // within a ball the fluence rises faster, by t / r of itself, which is 1.1 / extinction more. The grid adds a few hundredths.
-            let expected = 1.019 + 1.1 / extinction.max(8.0);
-            assert!((share - expected).abs().max_element() < 0.1, "{extinction}, {rung}: {share} for {expected}");
+            // Below a plane, where the fluence is t + z, diffusion's integral sends out 1.033 of its flux, of which the angles'
+            // factor leaves 1.019. Within a ball the fluence rises faster, at first by t / r of itself, which is up to 1.1 /
+            // extinction more; the grid adds some hundredths.
+            let most = 1.019 + 1.1 / extinction + 0.07;
+            assert!(share.min_element() > 1.0 && share.max_element() < most, "{extinction}, {rung}: {share} of {most}");
         }
     }
 }

@@ -26,8 +26,8 @@ mod furnace;
 mod gem;
 mod hard_cases;
 mod instances;
-#[cfg(unix)]
 mod lamp_inside;
+#[cfg(unix)]
 mod launcher;
 mod optical_path;
 mod optical_path_shading;

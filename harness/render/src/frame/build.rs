@@ -33,8 +33,9 @@ pub struct Builder<'gpu> {
     sources: Vec<String>,
     object: String,
     gpu: Option<&'gpu Gpu>,
-    /// Textures of images, by where their texels stand in memory and what these are taken for.
-    images: HashMap<(usize, Encoding), Texture>,
+    /// Textures of images, by where their texels stand in memory and what these are taken for. The texels are kept, so that
+    /// no others come to stand there.
+    images: HashMap<(usize, Encoding), (Arc<Texels>, Texture)>,
 }
 
 /// A texture whose parts are read back to the host.
@@ -163,18 +164,18 @@ impl<'gpu> Builder<'gpu> {
         Texture(self.resource(what, ResourceKind::Texture { size, levels, dimension, format, usage, contents }))
     }
 
-    /// Returns the texture of an image as these encoding's colours or data; the first use adds it, and it then belongs to all objects.
+    /// Returns the texture of an image as colours or data of this encoding; the first use adds it, and it then belongs to all objects.
     pub(crate) fn image(
         &mut self,
         (texels, encoding): (&Arc<Texels>, Encoding),
         make: impl FnOnce(&mut Self) -> Texture,
     ) -> Texture {
         let key = (Arc::as_ptr(texels).addr(), encoding);
-        if let Some(known) = self.images.get(&key) {
+        if let Some((_, known)) = self.images.get(&key) {
             return *known;
         }
         let made = self.of_object("", make);
-        self.images.insert(key, made);
+        self.images.insert(key, (Arc::clone(texels), made));
         made
     }
 

@@ -37,7 +37,9 @@ impl Layers {
 pub(super) fn of_image(texels: &Texels, encoding: Encoding) -> (u32, Vec<u8>) {
     let size = [texels.width(), texels.height()];
     let count = count(size);
-    let mut bytes = texels.bytes().to_vec();
+    // All further levels take a third of the first.
+    let mut bytes = Vec::with_capacity(texels.bytes().len() / 3 * 4 + 64);
+    bytes.extend_from_slice(texels.bytes());
     let mut level: Vec<Vec4> = Vec::new();
     for next in 1..count {
         let (before, larger) = (level_size(size, next - 1), std::mem::take(&mut level));
