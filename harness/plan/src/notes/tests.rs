@@ -113,12 +113,34 @@ fn light_that_no_picture_can_show_is_named() {
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(100_000.0) }];
     one(&scene, &by("lambert"), "is shown as plain white");
     assert_eq!(said(&scene, &Request { exposure: 1e-5, ..by("lambert") }), [""; 0]);
-    let near = Light::Point { position: scene.bounds().centre(), intensity: Vec3::splat(1e9) };
+    let bounds = scene.bounds();
+    let near =
+        Light::Point { position: bounds.centre() + 1.1 * bounds.radius() * Vec3::Y, intensity: Vec3::splat(1e9) };
     one(&Scene { lights: vec![near], ..scene.clone() }, &by("lambert"), "plain white");
     let map = EnvironmentMap { width: 2, height: 2, pixels: vec![[1000.0, 1000.0, 1000.0, 1.0]; 4] };
     let environment = Environment::Map(map);
     let bright = Request { environment: &environment, ..usual() };
     one(&named("brilliant"), &bright, "plain white");
+}
+
+#[test]
+fn light_that_a_rung_does_not_draw_is_named_once_for_all_bodies() {
+    let mut scene = named("bunny");
+    scene.lights.push(Light::Point { position: scene.bounds().centre(), intensity: Vec3::ONE });
+    scene.objects.push(scene.objects[0].clone());
+    one(&scene, &by("accurate"), "2 objects, first `bunny`: a lamp stands inside, and rung `accurate`");
+    assert_eq!(said(&scene, &by("diffusion-64")), [""; 0]);
+    let mut partial = named("bunny");
+    partial.objects.push(partial.objects[0].clone());
+    for object in &mut partial.objects {
+        object.material.diffuse_transmission = 0.5;
+    }
+    one(
+        &partial,
+        &by("diffusion-64"),
+        "2 objects, first `bunny`: rung `diffusion-64` draws no diffuseTransmissionFactor",
+    );
+    assert_eq!(said(&partial, &by("accurate")), [""; 0]);
 }
 
 #[test]

@@ -82,12 +82,13 @@ where
 /// Returns for each texel of the next level which texels of a row it covers, three at most, and their shares.
 fn covered(side: u32) -> Vec<[(usize, f32); 3]> {
     let next = level_size([side; 2], 1)[0];
-    let length = side as f32 / next as f32;
+    let length = f64::from(side) / f64::from(next);
     let texel = |place: u32| {
-        let (from, to) = (place as f32 * length, (place + 1) as f32 * length);
+        let [from, to] = [place, place + 1].map(|edge| f64::from(edge) * length);
         std::array::from_fn(|step| {
-            let at = from.floor() + step as f32;
-            ((at as usize).min(side as usize - 1), (to.min(at + 1.0) - from.max(at)).max(0.0) / length)
+            let at = from.floor() + step as f64;
+            let share = (to.min(at + 1.0) - from.max(at)).max(0.0) / length;
+            ((at as usize).min(side as usize - 1), share as f32)
         })
     };
     (0..next).map(texel).collect()
