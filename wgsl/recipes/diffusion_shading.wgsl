@@ -411,24 +411,66 @@ fn diffusion_way(layer: u32, position: vec3f, toward_light: vec3f) -> f32 {
     return max(whole / max(near, 1e-12f) - free, 0.0f);
 }
 
+// Light that is scattered towards the eye for the first time, summed piece by piece along the way of the eye inside.
+struct DiffusionSingle {
+    // Optical depth of the eye's way so far, and that towards the light at its end.
+    gone: vec3f,
+    near: vec3f,
+    // Length of the way so far, and the density there.
+    before: f32,
+    last: f32,
+}
+
+// The end of a piece of the eye's way; number 0 is the surface.
+struct DiffusionEnd {
+    reached: f32,
+    // 0 where the way has left the body.
+    dense: f32,
+}
+
+fn diffusion_end(inside: DiffusionWay, end: u32) -> DiffusionEnd {
+    if (end == 0u) {
+        return DiffusionEnd(0.0f, inside.surface);
+    }
+    return DiffusionEnd(inside.ends[end - 1u], inside.densities[end - 1u]);
+}
+
+// The density on the way of light to an end. Where the eye's way leaves the body, light on its way to there goes through the matter
+// before.
+fn diffusion_density_towards(single: DiffusionSingle, place: DiffusionEnd) -> f32 {
+    return select(single.last, place.dense, place.dense > 0.0f);
+}
+
+// Goes on to an end with this optical depth towards the light, or begins there; returns what the piece sends, for an irradiance of 1.
+fn diffusion_single_piece(single: ptr<function, DiffusionSingle>, place: DiffusionEnd, depth: vec3f, begins: bool) -> vec3f {
+    let far = min(depth, vec3f(30.0f));
+    var sent = vec3f(0.0f);
+    if (!begins) {
+        let thickness = body.extinction * ((*single).last * (place.reached - (*single).before));
+        sent = exp(-(*single).gone) * vec3f(
+            diffusion_unscattered(thickness.x, (*single).near.x, far.x),
+            diffusion_unscattered(thickness.y, (*single).near.y, far.y),
+            diffusion_unscattered(thickness.z, (*single).near.z, far.z),
+        );
+        (*single).gone += thickness;
+    }
+    (*single).near = far;
+    (*single).before = place.reached;
+    (*single).last = place.dense;
+    return sent;
+}
+
 // Light that is scattered towards the eye for the first time, along the way inside from a point, away from
 // `toward_eye`: radiance for an irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
 // light that meets the first point.
 fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
     var sum = vec3f(0.0f);
-    var gone = vec3f(0.0f);
-    var near = vec3f(0.0f);
-    var before = 0.0f;
-    var last = inside.surface;
+    var single: DiffusionSingle;
+    single.last = inside.surface;
     for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
-        var reached = 0.0f;
-        var dense = inside.surface;
-        if (end > 0u) {
-            reached = inside.ends[end - 1u];
-            dense = inside.densities[end - 1u];
-        }
+        let place = diffusion_end(inside, end);
         // A texel spans much of the surface's height where light grazes it; a lit surface counts as flat there.
-        let flat = reached * cosines.x / max(cosines.y, 0.02f);
+        let flat = place.reached * cosines.x / max(cosines.y, 0.02f);
         var flatness = lit * (1.0f - smoothstep(0.1f, 0.5f, cosines.y));
         if (EFFECT_DIELECTRIC) {
             // The map knows the way of light that is not refracted.
@@ -438,24 +480,11 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
         flatness = select(flatness, lit, end == 0u);
         var way = flat;
         if (flatness < 1.0f) {
-            let found = diffusion_way(layer, position - reached * body.grid.spacing * toward_eye, toward_light);
+            let found = diffusion_way(layer, position - place.reached * body.grid.spacing * toward_eye, toward_light);
             way = mix(found, flat, flatness);
         }
-        // Where the eye's way leaves the body, light on its way to there goes through the matter before.
-        let density = select(last, dense, dense > 0.0f);
-        let far = min(body.extinction * (density * way), vec3f(30.0f));
-        if (end > 0u) {
-            let thickness = body.extinction * (last * (reached - before));
-            sum += exp(-gone) * vec3f(
-                diffusion_unscattered(thickness.x, near.x, far.x),
-                diffusion_unscattered(thickness.y, near.y, far.y),
-                diffusion_unscattered(thickness.z, near.z, far.z),
-            );
-            gone += thickness;
-        }
-        near = far;
-        before = reached;
-        last = dense;
+        let depth = body.extinction * (diffusion_density_towards(single, place) * way);
+        sum += diffusion_single_piece(&single, place, depth, end == 0u);
     }
     return sum;
 }
@@ -466,35 +495,17 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
 fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, inside: DiffusionWay) -> vec3f {
     let spacing = body.grid.spacing;
     var sum = vec3f(0.0f);
-    var gone = vec3f(0.0f);
-    var near = vec3f(0.0f);
-    var before = 0.0f;
-    var last = inside.surface;
+    var single: DiffusionSingle;
+    single.last = inside.surface;
     for (var end = 0u; end <= DIFFUSION_PIECES; end++) {
-        var reached = 0.0f;
-        var dense = inside.surface;
-        if (end > 0u) {
-            reached = inside.ends[end - 1u];
-            dense = inside.densities[end - 1u];
-        }
-        let way = (light.place - (position - reached * spacing * toward_eye)) / spacing;
+        let place = diffusion_end(inside, end);
+        let way = (light.place - (position - place.reached * spacing * toward_eye)) / spacing;
         // The grid knows nothing finer than half a spacing. Light falls off by the square of the distance as if by
         // an optical depth of its logarithm.
         let squared = max(dot(way, way), 0.25f);
-        let density = select(last, dense, dense > 0.0f);
-        let far = min(body.extinction * (density * sqrt(squared)) + log(4.0f * squared), vec3f(30.0f));
-        if (end > 0u) {
-            let thickness = body.extinction * (last * (reached - before));
-            sum += light_power(light, way * inverseSqrt(max(dot(way, way), 1e-12f))) * exp(-gone) * vec3f(
-                diffusion_unscattered(thickness.x, near.x, far.x),
-                diffusion_unscattered(thickness.y, near.y, far.y),
-                diffusion_unscattered(thickness.z, near.z, far.z),
-            );
-            gone += thickness;
-        }
-        near = far;
-        before = reached;
-        last = dense;
+        let depth = body.extinction * (diffusion_density_towards(single, place) * sqrt(squared)) + log(4.0f * squared);
+        let power = light_power(light, way * inverseSqrt(max(dot(way, way), 1e-12f)));
+        sum += power * diffusion_single_piece(&single, place, depth, end == 0u);
     }
     return 4.0f / (spacing * spacing) * sum;
 }

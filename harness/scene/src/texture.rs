@@ -115,7 +115,8 @@ impl Encoding {
     /// Returns the linear value of a texel, each channel 0 to 1.
     #[must_use]
     pub fn decoded(self, texel: [u8; 4]) -> Vec4 {
-        static SRGB: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|code| srgb(code as f64 / 255.0)));
+        static SRGB: LazyLock<[f32; 256]> =
+            LazyLock::new(|| std::array::from_fn(|code| lapidary_srgb::oracle::decode(code as f64 / 255.0) as f32));
         let share = |byte: u8| f32::from(byte) / 255.0;
         let [red, green, blue, alpha] = texel;
         let color = match self {
@@ -129,22 +130,12 @@ impl Encoding {
     #[must_use]
     pub fn encoded(self, linear: Vec4) -> [u8; 4] {
         let code = |light: f32| match self {
-            Self::Srgb => srgb_code(f64::from(light.clamp(0.0, 1.0))),
+            Self::Srgb => lapidary_srgb::encode(light),
             Self::Linear => light,
         };
         let [red, green, blue, alpha] = linear.to_array();
         [code(red), code(green), code(blue), alpha].map(|share| (255.0 * share).round() as u8)
     }
-}
-
-/// The transfer function of IEC 61966-2-1:1999, from code value to light.
-fn srgb(code: f64) -> f32 {
-    (if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }) as f32
-}
-
-/// The inverse of [`srgb`].
-fn srgb_code(light: f64) -> f32 {
-    (if light <= 0.0031308 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }) as f32
 }
 
 impl Wrap {

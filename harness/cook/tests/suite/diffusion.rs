@@ -17,7 +17,8 @@ use lapidary_scene::surfaces::{rounded_box, sphere};
 use lapidary_scene::{Camera, Environment, Light, Material, Medium, Mesh, Object, Scene};
 use {lapidary_fresnel as fresnel, lapidary_half_space as half_space};
 
-fn drawn(scene: &Scene, rung: &str, side: u32) -> Picture {
+/// Draws by a rung, without environment and sheen.
+pub(crate) fn drawn(scene: &Scene, rung: &str, side: u32) -> Picture {
     let settings = Settings {
         rung: rung.parse().expect(rung),
         samples: 1,
@@ -28,7 +29,7 @@ fn drawn(scene: &Scene, rung: &str, side: u32) -> Picture {
 }
 
 /// Returns a body of this matter under some lights, seen at these angles.
-fn scene_of(mesh: Mesh, medium: Medium, lights: Vec<Light>, (polar, azimuth): (f32, f32)) -> Scene {
+pub(crate) fn scene_of(mesh: Mesh, medium: Medium, lights: Vec<Light>, (polar, azimuth): (f32, f32)) -> Scene {
     let mut scene = Scene::named("bunny").expect("built in");
     let material = Material { medium: Some(medium), ..scene.objects[0].material.clone() };
     scene.objects = vec![Object::new("body", mesh, material)];

@@ -1,39 +1,23 @@
 //! Lamps inside bodies through which light diffuses: what leaves a body is what its lamp sends out, and it leaves where random
 //! walks say.
 
+use crate::diffusion::{drawn, scene_of};
 use crate::pixels::rays;
 use glam::{DVec3, Vec3};
 use lapidary_cook::exposure::distance;
 use lapidary_cook::snapshot::frames::halved;
-use lapidary_plan::{Effect, Effects};
-use lapidary_render as render;
-use lapidary_render::{DiffusionOptions, Picture, Settings};
+use lapidary_render::Picture;
 use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Light, Material, Medium, Object, Scene};
+use lapidary_scene::{Light, Medium, Scene};
 use std::f64::consts::{PI, TAU};
 
 /// A ball of this matter around the origin, with lights.
 fn ball(radius: f32, medium: Medium, lights: Vec<Light>) -> Scene {
-    let mut scene = Scene::named("bunny").expect("built in");
-    let material = Material { medium: Some(medium), ior: 1.0, ..scene.objects[0].material.clone() };
-    scene.objects = vec![Object::new("ball", sphere(radius.into(), 96), material)];
-    scene.lights = lights;
-    scene.seen_from(80.0, 10.0)
+    scene_of(sphere(radius.into(), 96), medium, lights, (80.0, 10.0))
 }
 
 fn lamp(position: Vec3, intensity: Vec3) -> Light {
     Light::Point { position, intensity }
-}
-
-fn drawn(scene: &Scene, rung: &str, side: u32) -> Picture {
-    let settings = Settings {
-        rung: rung.parse().expect(rung),
-        samples: 1,
-        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
-        diffusion: DiffusionOptions { cycles: 12, ..DiffusionOptions::default() },
-        ..Settings::of_size(side, side)
-    };
-    render::render(super::gpu(), scene, &settings).expect("rendered")
 }
 
 /// SplitMix64.
