@@ -1,6 +1,6 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 40d21b5309a3ecc8
+// Version: 0.2.0, hash b9f256d751527243
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected
 //   after (A.6). The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the
 //   Regularization Method", 1963.
@@ -43,7 +43,8 @@ fn closest_point_direction(vector: vec3f) -> vec3f {
     if size < 1.1754944e-38f {
         return vec3f(0.0f);
     }
-    let scaled = vector / size;
+    // The reciprocal of a larger size is subnormal, and the quotient may be 0.
+    let scaled = vector / min(size, 8.507059e37f);
     return scaled / length(scaled);
 }
 

@@ -1,6 +1,6 @@
 // random_walk: random walks of light in a scattering medium: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 77407b01e904e38b
+// Version: 0.2.0, hash b541375428cc2ca8
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta
 //   tracking); Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in
@@ -17,6 +17,8 @@ const RANDOM_WALK_ABSORBED = 1u;
 const RANDOM_WALK_PASSED = 2u;
 // The least majorant; smaller ones count as this. Free paths are then at most 1.7e31 long.
 const RANDOM_WALK_THINNEST: f32 = 1e-30f;
+// The largest majorant of a free path, 2^126: the reciprocal of a larger one is subnormal, and may be 0.
+const RANDOM_WALK_DENSEST: f32 = 8.507059e37f;
 // The largest magnitude of the anisotropy. Light turns by a thousandth of a degree on average
 // there, and for the next floats the turn would round to none.
 const RANDOM_WALK_STRAIGHTEST: f32 = 0.999999f;
@@ -71,7 +73,7 @@ fn random_walk_random(counter: vec4u) -> vec4f {
 // have rounded u away.
 // Returns: a length in [0, 1.7e31], exponentially distributed for a uniform u; 0 for u = 0.
 // Units: the inverse of the majorant's.
-// Domain: u in [0, 1), clamped to that; any majorant, where one below 1e-30 counts as 1e-30.
+// Domain: u in [0, 1), clamped to that; any majorant, clamped to [1e-30, 2^126].
 // Outside: nothing; u below 2^-120 may count as 0.
 // Accuracy: lavapipe 9 ulp; portable 24 ulp
 fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
@@ -88,7 +90,7 @@ fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
     // the remaining terms, which leaves an error of 7e-9.
     let series = 1.0f + square * (0.33333334f + square * (0.2f + square * 0.14595f));
     let depth = f32(-exponent) * 0.6931472f - 2.0f * s * series;
-    return depth / max(majorant, RANDOM_WALK_THINNEST);
+    return depth / clamp(majorant, RANDOM_WALK_THINNEST, RANDOM_WALK_DENSEST);
 }
 
 // The outcome of a tentative collision (delta tracking). Where the medium is thinner than the

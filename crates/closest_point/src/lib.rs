@@ -38,7 +38,7 @@ pub fn direction(vector: Vec3) -> Vec3 {
     if size < f32::MIN_POSITIVE {
         return Vec3::ZERO;
     }
-    let scaled = vector / size;
+    let scaled = vector / size.min(8.507059e37);
     scaled / scaled.length()
 }
 

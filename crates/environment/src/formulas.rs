@@ -21,7 +21,7 @@ const UNIT: f64 = 32.0 / (1 << 24) as f64;
 fn coordinate(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => 0.0,
-        1..=3 => draws.signed(-126, 126),
+        1..=3 => draws.signed(-126, 125),
         _ => draws.between(-1.0, 1.0),
     }
 }
@@ -33,7 +33,7 @@ fn direction(draws: &mut Draws<'_>) -> Vec3 {
     match draws.below(8) {
         0 => Vec3::new(near_axis(draws), draws.pick(&[1.0, -1.0]), near_axis(draws)),
         1 => Vec3::new(-1.0, draws.between(-1.0, 1.0), draws.signed(-40, -10)),
-        2 => Vec3::new(coordinate(draws), draws.signed(-126, 126), coordinate(draws)),
+        2 => Vec3::new(coordinate(draws), draws.signed(-126, 125), coordinate(draws)),
         // A component may have become subnormal.
         3 => (draws.unit_vector() * draws.magnitude(-120, 120)).map(|x| if x.is_subnormal() { 0.0 } else { x }),
         _ => draws.unit_vector(),

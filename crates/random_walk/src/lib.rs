@@ -28,6 +28,8 @@ pub const RANDOM_WALK_ABSORBED: u32 = 1;
 pub const RANDOM_WALK_PASSED: u32 = 2;
 /// Least majorant; smaller ones count as this.
 pub const RANDOM_WALK_THINNEST: f32 = 1e-30;
+/// Largest majorant of a free path, 2^126; larger ones count as this.
+pub const RANDOM_WALK_DENSEST: f32 = 8.507059e37;
 /// Largest magnitude of the anisotropy.
 pub const RANDOM_WALK_STRAIGHTEST: f32 = 0.999999;
 
@@ -80,7 +82,7 @@ pub fn free_path(u: f32, majorant: f32) -> f32 {
     let square = s * s;
     let series = 1.0 + square * (0.33333334 + square * (0.2 + square * 0.14595));
     let depth = (-exponent) as f32 * 0.6931472 - 2.0 * s * series;
-    depth / majorant.max(RANDOM_WALK_THINNEST)
+    depth / majorant.clamp(RANDOM_WALK_THINNEST, RANDOM_WALK_DENSEST)
 }
 
 /// Computes the free path by the built-in logarithm, a naive form.

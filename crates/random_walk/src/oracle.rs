@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 // The module's constants, repeated so that an error in them does not carry over to the oracle.
 const THINNEST: f64 = 1e-30;
+const DENSEST: f64 = 8.507059173023462e37;
 const STRAIGHTEST: f64 = 0.999999f32 as f64;
 
 /// Two unit vectors that form a right-handed basis with a normal as the third.
@@ -55,7 +56,7 @@ pub fn random(counter: UVec4) -> DVec4 {
 
 /// Computes the path with the logarithm of 1 + x.
 pub fn free_path(u: f64, majorant: f64) -> f64 {
-    -(-u.clamp(0.0, 1.0 - 2f64.powi(-24))).ln_1p() / majorant.max(THINNEST)
+    -(-u.clamp(0.0, 1.0 - 2f64.powi(-24))).ln_1p() / majorant.clamp(THINNEST, DENSEST)
 }
 
 /// Calls [`free_path`]: the naive form is the same function, computed badly.

@@ -71,7 +71,8 @@ pub enum Slack {
 /// Assumption in a case for which the standard states no accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Assumption {
-    /// Quotient by a divisor beyond 2^±126: 2.5 ulp, as within.
+    /// Quotient by a divisor below 2^-126: 2.5 ulp, as within; by one above 2^126: the same, or 0, which is what
+    /// NVIDIA's driver returns.
     Quotient,
     /// Sine or cosine beyond ±π: 2^-11, as within.
     Wave,
@@ -86,7 +87,9 @@ pub enum Assumption {
 impl std::fmt::Display for Assumption {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(match self {
-            Assumption::Quotient => "a quotient is as accurate where the divisor lies beyond 2^-126 to 2^126",
+            Assumption::Quotient => {
+                "a quotient is as accurate, or is 0, where the divisor lies above 2^126; as accurate below 2^-126"
+            }
             Assumption::Wave => "sine and cosine are as accurate beyond -π to π",
             Assumption::Root => "sqrt(0) is 0",
             Assumption::Power => "pow(0, y) is 0 for y > 0",

@@ -121,7 +121,9 @@ impl Registers {
                 if !DIVISORS.contains(&y.abs()) {
                     machine.assumed(Assumption::Quotient);
                 }
-                let exact = f64::from(x) / f64::from(y);
+                // GPUs multiply by a reciprocal, which is subnormal for such a divisor and may be flushed.
+                let flushed = y.is_finite() && y.abs() > *DIVISORS.end() && machine.operand(1.0 / y) == 0.0;
+                let exact = if flushed { 0.0 } else { f64::from(x) / f64::from(y) };
                 let quotient = machine.round(Exact::from(exact), Slack::Ulps(2.5));
                 self.put(to, quotient, (None, [a, b]), || [1.0 / f64::from(y), -exact / f64::from(y)], machine);
             }

@@ -369,3 +369,14 @@ fn what_the_standard_does_not_state_is_named() {
     assert_eq!(assumed("fn f(x: f32) -> f32 { return pow(x, 2.0); }", &[0.0]), [Assumption::Power]);
     assert_eq!(assumed("fn f(x: f32) -> f32 { return atan2(x, 1.0); }", &[0.0]), [Assumption::Angle]);
 }
+
+#[test]
+fn a_quotient_by_more_than_the_range_may_be_nothing() {
+    let program = program("fn f(x: f32, y: f32) -> f32 { return x / y; }");
+    let flushing = Mode { flushes: Habit::Always, ..Mode::IDENTITY };
+    let quotient = |mode: Mode, divisor: f32| run(&program, mode, 0, &[1.5e38, divisor]);
+    assert_eq!(quotient(flushing, 1e38), 0.0);
+    assert_eq!(quotient(Mode::IDENTITY, 1e38), 1.5);
+    // The last divisor whose reciprocal is normal.
+    assert_eq!(quotient(flushing, 2f32.powi(126)), 1.5e38 / 2f32.powi(126));
+}
