@@ -20,7 +20,11 @@ fn an_unknown_adapter_is_named_with_what_there_is() {
 #[cfg(target_os = "linux")]
 fn a_system_without_adapters_is_told_what_to_install() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let none = [("VK_DRIVER_FILES", "/nonexistent.json"), ("VK_ICD_FILENAMES", "/nonexistent.json")];
+    let none = [
+        ("VK_DRIVER_FILES", "/nonexistent.json"),
+        ("VK_ICD_FILENAMES", "/nonexistent.json"),
+        (lapidary_gpu::ADAPTER_VARIABLE, "lavapipe"),
+    ];
     for command in ["check", "render"] {
         let subject = if command == "check" { "refraction" } else { "octahedron" };
         let answer = cook_in(folder.path(), &[command, subject], &none);

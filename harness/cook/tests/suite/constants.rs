@@ -44,7 +44,7 @@ mirrored! {
     microfacet, lapidary_microfacet: MICROFACET_SMOOTHEST MICROFACET_GRAZING MICROFACET_OPPOSITE;
     optical_path, lapidary_optical_path: OPTICAL_PATH_UNREACHED OPTICAL_PATH_DARKEST OPTICAL_PATH_DEEPEST;
     proxy_geometry, lapidary_proxy_geometry: PROXY_GEOMETRY_PARALLEL;
-    random_walk, lapidary_random_walk: RANDOM_WALK_SCATTERED RANDOM_WALK_ABSORBED RANDOM_WALK_PASSED RANDOM_WALK_THINNEST
+    random_walk, lapidary_random_walk: RANDOM_WALK_SCATTERED RANDOM_WALK_ABSORBED RANDOM_WALK_PASSED RANDOM_WALK_THINNEST RANDOM_WALK_DENSEST
         RANDOM_WALK_STRAIGHTEST;
     reflective_shadow_map, lapidary_reflective_shadow_map: REFLECTIVE_SHADOW_MAP_NOTHING;
     texture_diffusion, lapidary_texture_diffusion: TEXTURE_DIFFUSION_REACH TEXTURE_DIFFUSION_LEAST_RATIO

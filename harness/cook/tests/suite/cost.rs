@@ -201,6 +201,13 @@ fn the_pages_show_the_record() {
             assert!(drawn == plot.svg().expect("drawn"), "{} is not the record's: {again}", plot.file);
         }
     }
+    // Of a GPU, when there was one.
+    for name in ["gem", "cdrf", "optical_path", "effects", "translucent", "dynamic"] {
+        let folder = "docs/measurements/nvidia_h200";
+        let text = docs(&format!("measurements/nvidia_h200/{name}.txt"));
+        let again = format!("./cook cost {name} --from {folder}/{name}.json --out {folder}");
+        assert!(text == record(name, "nvidia_h200").text(ladder(name)), "{name}.txt is not the record's: {again}");
+    }
 }
 
 fn docs(name: &str) -> String {

@@ -35,6 +35,9 @@ fn by_material() -> Settings {
 
 #[test]
 fn another_host_draws_the_same_pictures() {
+    if !crate::on_lavapipe("other drivers compile a text for each host, and round differently") {
+        return;
+    }
     let by_material = by_material();
     let of_rung = |rung: &str| Settings { rung: rung.parse().expect(rung), ..by_material.clone() };
     let cases = [

@@ -9,6 +9,9 @@ use lapidary_cook::formulas;
 
 #[test]
 fn each_stable_form_holds_and_each_naive_form_fails() {
+    if !crate::on_lavapipe("limits and naive errors are stated for it; cook check tests the others") {
+        return;
+    }
     let gpu = super::gpu();
     let mut faults = Vec::new();
     let mut count = 0;

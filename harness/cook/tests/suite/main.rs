@@ -104,3 +104,14 @@ fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
 fn gpu() -> &'static Gpu {
     Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"))
 }
+
+/// Whether the tests run on lavapipe, the reference device. If not, standard error says that what follows is left
+/// out, and why it can be stated for lavapipe alone.
+fn on_lavapipe(why: &str) -> bool {
+    let gpu = gpu();
+    if !gpu.is_lavapipe() {
+        let name = std::thread::current().name().unwrap_or_default().to_owned();
+        let _ = writeln!(std::io::stderr(), "{name}: left out on {}: {why}", gpu.info.name);
+    }
+    gpu.is_lavapipe()
+}

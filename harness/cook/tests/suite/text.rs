@@ -37,7 +37,11 @@ fn the_drivers_are_as_recorded() {
     let of = |folder: &str| -> builtins::Report {
         serde_json::from_str(&read(&format!("measurements/{folder}/builtins.json"))).expect(folder)
     };
-    let builtins = builtins::side_by_side(&[("lavapipe", of("lavapipe")), ("SwiftShader", of("swiftshader"))]);
+    let builtins = builtins::side_by_side(&[
+        ("lavapipe", of("lavapipe")),
+        ("SwiftShader", of("swiftshader")),
+        ("NVIDIA H200", of("nvidia_h200")),
+    ]);
     let rows: Vec<Row> = serde_json::from_str(&read("measurements/swiftshader/check.json")).expect("rows");
     let page = read("drivers.md");
     let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");

@@ -227,6 +227,9 @@ fn a_thickness_scales_how_far_light_spreads() {
 /// is the rest.
 #[test]
 fn a_transmission_is_the_share_that_enters() {
+    if !crate::on_lavapipe("other drivers round each variant differently") {
+        return;
+    }
     let image = |share: u8| {
         let texels = Texels::new(1, 1, vec![255, 9, 90, share]).expect("an image");
         Texture::new(Arc::new(texels), Encoding::Linear)
