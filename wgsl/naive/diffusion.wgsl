@@ -136,6 +136,17 @@ fn diffusion_local_naive(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f3
     return law - 0.07957747f * albedo * (m0 / (m + m0) + angle * (above + below + rest));
 }
 
+// The flux limiter as it is printed.
+// Returns: 3 (coth R - 1/R) / R with R = |one - other| / (thickness mean).
+// Units: as diffusion_limit.
+// Domain: one in [0.1, 0.4], other in [0.5, 1], thickness in [0.5, 2].
+// Outside: few digits for a gentle slope; 0 / 0 for equal fluences or none.
+// Accuracy: naive
+fn diffusion_limit_naive(one: f32, other: f32, thickness: f32) -> f32 {
+    let slope = abs(one - other) / (thickness * 0.5f * (one + other));
+    return 3.0f * (1.0f / tanh(slope) - 1.0f / slope) / slope;
+}
+
 // The step of relaxation without a guard.
 // Returns: (load + inflow) / (conductances + reaction).
 // Units: as diffusion_relax.

@@ -326,10 +326,7 @@ fn diffusion_cells_finish(@builtin(workgroup_id) group: vec3u, @builtin(local_in
         var conductance = 0.0f;
         if (next[axis] < count) {
             let beyond = filled[diffusion_index(next)];
-            // Eighths on this side of the face that meet filled ones on the other.
-            let shift = 1u << axis;
-            let mask = select(select(0x0fu, 0x33u, axis == 1u), 0x55u, axis == 0u);
-            let open = 0.25f * f32(countOneBits((parts >> shift) & beyond & mask));
+            let open = diffusion_open(parts, beyond, axis);
             if (open > 0.0f) {
                 let distance = 1.0f + diffusion_centroid(beyond)[axis] - centroid[axis];
                 conductance = diffusion_face(open, distance, vec2f(own, diffusion_density(diffusion_index(next))));

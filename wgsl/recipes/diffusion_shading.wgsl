@@ -15,6 +15,9 @@ override EFFECT_LAMP_INSIDE: bool = false;
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+// The density varies so much that ways of eye and light are followed from voxel to voxel; else that about a point counts
+// for the way to the next. Needs EFFECT_EXTINCTION_PER_VOXEL.
+override DIFFUSION_VARIED: bool = false;
 // Diffuse light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
 // The surface refracts light, and reflects it back inside. Called for by KHR_materials_ior above 1.
@@ -23,6 +26,11 @@ override EFFECT_DIELECTRIC: bool = false;
 // The way inside is cut where its optical depth is 0, .4, 1.2, 2.5 and 5.
 const DIFFUSION_PIECES: u32 = 4u;
 const DIFFUSION_STEPS: vec4f = vec4f(0.4f, 0.8f, 1.3f, 2.5f);
+// Voxels that a piece may pass where the density varies, and the largest number looked up towards a light.
+const DIFFUSION_TURNS: u32 = 222u;
+const DIFFUSION_TOWARDS: f32 = 16.0f;
+// Voxel spacings over which the density counts as one.
+const DIFFUSION_NEAR: f32 = 2.0f;
 
 struct DiffusionView {
     clip_from_world: mat4x4f,
@@ -242,12 +250,16 @@ struct DiffusionWay {
     // Density at the surface, and at each piece's end: 0 where the way has left the body.
     surface: f32,
     densities: vec4f,
+    // The mean of the density over each piece.
+    means: vec4f,
     // Radiance towards the eye for an albedo of 4 pi.
     scattered: vec3f,
     // Radiance that comes straight through the body.
     straight: vec3f,
     // Mean depth of the nodes about the first point, in voxel spacings.
     depth: f32,
+    // Share of the light along the way that collides before the way leaves the body: how much of a half space there is.
+    covered: vec3f,
 }
 
 // What is known of the eye's way up to some point.
@@ -259,11 +271,58 @@ struct DiffusionEye {
     density: f32,
     filled: f32,
     fullest: f32,
+    // The mean of the density over the piece up to there.
+    mean: f32,
     // The fluence there, and the optical depth up to there.
     near: vec3f,
     gone: vec3f,
     scattered: vec3f,
 }
+
+//+extinction_per_voxel {
+// The density of the voxel about a place, given in voxel spacings from the grid's corner; `otherwise` where there is no matter.
+fn diffusion_density_about(place: vec3f, otherwise: f32) -> f32 {
+    let voxel = vec3u(clamp(place, vec3f(0.0f), vec3f(f32(body.grid.cells - 1u))));
+    let index = voxel.x + body.grid.cells * (voxel.y + body.grid.cells * voxel.z);
+    return select(otherwise, max(density[index], DIFFUSION_THINNEST), diffusion_packed_volume(packed[index]) > 0.0f);
+}
+
+// Goes on from a place, about which the density is `dense`, until density times length is `wanted`, or beyond the matter.
+// Returns: the length in voxel spacings, and the mean density.
+fn diffusion_march(place: vec3f, along: vec3f, wanted: f32, dense: f32) -> vec2f {
+    var way = min(wanted / dense, DIFFUSION_NEAR);
+    var gone = way * dense;
+    for (var turn = 0u; turn < DIFFUSION_TURNS && gone < 0.9999f * wanted; turn++) {
+        // Next to the surface a voxel may hold no matter.
+        let local = diffusion_density_about(place + (way + 0.5f) * along, select(-1.0f, dense, turn == 0u));
+        if (local < 0.0f) {
+            way += 1.0f;
+            break;
+        }
+        let step = min((wanted - gone) / local, 1.0f);
+        way += step;
+        gone += step * local;
+    }
+    return vec2f(way, gone / way);
+}
+
+// The mean density along a way from a place, where it is `dense`.
+fn diffusion_mean_density(place: vec3f, along: vec3f, way: f32, dense: f32) -> f32 {
+    let least = min(body.extinction.x, min(body.extinction.y, body.extinction.z)) * dense * way;
+    // Nearby it hardly varies; and where little light is left, it would need to be far off to matter.
+    if (way <= DIFFUSION_NEAR || least > 60.0f) {
+        return dense;
+    }
+    let count = u32(clamp(ceil(0.5f * way), 1.0f, DIFFUSION_TOWARDS));
+    var sum = 0.0f;
+    var local = dense;
+    for (var step = 0u; step < count; step++) {
+        local = diffusion_density_about(place + ((f32(step) + 0.5f) / f32(count) * way) * along, local);
+        sum += local;
+    }
+    return sum / f32(count);
+}
+//+extinction_per_voxel }
 
 // Adds a piece of the way, or begins it.
 fn diffusion_piece(eye: ptr<function, DiffusionEye>, sample: DiffusionSample, before: f32, depth: f32, around: DiffusionAround, begins: bool) {
@@ -281,7 +340,7 @@ fn diffusion_piece(eye: ptr<function, DiffusionEye>, sample: DiffusionSample, be
     let found = diffusion_at_depth(sample, below);
     let far = diffusion_below(found, below, outside);
     if (!begins) {
-        let thickness = body.extinction * (max((*eye).density, DIFFUSION_THINNEST) * ((*eye).way - before));
+        let thickness = body.extinction * ((*eye).mean * ((*eye).way - before));
         (*eye).scattered += exp(-(*eye).gone) * vec3f(
             diffusion_segment((*eye).near.x, far.x, thickness.x),
             diffusion_segment((*eye).near.y, far.y, thickness.y),
@@ -315,7 +374,17 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
         if (!left) {
             before = eye.way;
             if (end > 0u) {
-                eye.way += DIFFUSION_STEPS[end - 1u] / (extinction * max(eye.density, DIFFUSION_THINNEST));
+                let wanted = DIFFUSION_STEPS[end - 1u] / extinction;
+                eye.mean = max(eye.density, DIFFUSION_THINNEST);
+                var length = wanted / eye.mean;
+                //+extinction_per_voxel {
+                if (EFFECT_EXTINCTION_PER_VOXEL && DIFFUSION_VARIED) {
+                    let piece = diffusion_march(start - before * toward_eye, -toward_eye, wanted, eye.mean);
+                    length = piece.x;
+                    eye.mean = piece.y;
+                }
+                //+extinction_per_voxel }
+                eye.way += length;
             }
             let found = diffusion_sample(start - eye.way * toward_eye);
             eye.fullest = max(eye.fullest, found.filled);
@@ -332,6 +401,7 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
         } else if (!left) {
             inside.ends[end - 1u] = eye.way;
             inside.densities[end - 1u] = eye.density;
+            inside.means[end - 1u] = eye.mean;
             pieces = end;
         }
     }
@@ -364,6 +434,7 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
             if (end >= pieces) {
                 inside.ends[end] = eye.way;
                 inside.densities[end] = 0.0f;
+                inside.means[end] = eye.mean;
             }
         }
     } else {
@@ -371,6 +442,7 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
     }
     inside.scattered = body.largest * eye.scattered * angles;
     inside.straight = vec3f(0.0f);
+    inside.covered = select(vec3f(1.0f), 1.0f - exp(-eye.gone), left);
     if (EFFECT_ENVIRONMENT) {
         if (left) {
             // The angles' factor, since the local part is that of a half space, through which nothing comes.
@@ -426,19 +498,27 @@ struct DiffusionEnd {
     reached: f32,
     // 0 where the way has left the body.
     dense: f32,
+    // The mean density over the piece before.
+    mean: f32,
 }
 
 fn diffusion_end(inside: DiffusionWay, end: u32) -> DiffusionEnd {
     if (end == 0u) {
-        return DiffusionEnd(0.0f, inside.surface);
+        return DiffusionEnd(0.0f, inside.surface, inside.surface);
     }
-    return DiffusionEnd(inside.ends[end - 1u], inside.densities[end - 1u]);
+    return DiffusionEnd(inside.ends[end - 1u], inside.densities[end - 1u], inside.means[end - 1u]);
 }
 
-// The density on the way of light to an end. Where the eye's way leaves the body, light on its way to there goes through the matter
-// before.
-fn diffusion_density_towards(single: DiffusionSingle, place: DiffusionEnd) -> f32 {
-    return select(single.last, place.dense, place.dense > 0.0f);
+// The density on the way of light to an end, of which `start` and `toward_eye` tell the place. Where the eye's way leaves the
+// body, light on its way to there goes through the matter before.
+fn diffusion_density_towards(single: DiffusionSingle, place: DiffusionEnd, start: vec3f, toward_eye: vec3f, toward_light: vec3f, way: f32) -> f32 {
+    let dense = select(single.last, place.dense, place.dense > 0.0f);
+    //+extinction_per_voxel {
+    if (EFFECT_EXTINCTION_PER_VOXEL && DIFFUSION_VARIED) {
+        return diffusion_mean_density(start - place.reached * toward_eye, toward_light, way, dense);
+    }
+    //+extinction_per_voxel }
+    return dense;
 }
 
 // Goes on to an end with this optical depth towards the light, or begins there; returns what the piece sends, for an irradiance of 1.
@@ -446,7 +526,7 @@ fn diffusion_single_piece(single: ptr<function, DiffusionSingle>, place: Diffusi
     let far = min(depth, vec3f(30.0f));
     var sent = vec3f(0.0f);
     if (!begins) {
-        let thickness = body.extinction * ((*single).last * (place.reached - (*single).before));
+        let thickness = body.extinction * (place.mean * (place.reached - (*single).before));
         sent = exp(-(*single).gone) * vec3f(
             diffusion_unscattered(thickness.x, (*single).near.x, far.x),
             diffusion_unscattered(thickness.y, (*single).near.y, far.y),
@@ -464,6 +544,7 @@ fn diffusion_single_piece(single: ptr<function, DiffusionSingle>, place: Diffusi
 // `toward_eye`: radiance for an irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
 // light that meets the first point.
 fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
+    let start = voxelization_local(body.grid, position);
     var sum = vec3f(0.0f);
     var single: DiffusionSingle;
     single.last = inside.surface;
@@ -483,7 +564,7 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
             let found = diffusion_way(layer, position - place.reached * body.grid.spacing * toward_eye, toward_light);
             way = mix(found, flat, flatness);
         }
-        let depth = body.extinction * (diffusion_density_towards(single, place) * way);
+        let depth = body.extinction * (diffusion_density_towards(single, place, start, toward_eye, toward_light, way) * way);
         sum += diffusion_single_piece(&single, place, depth, end == 0u);
     }
     return sum;
@@ -494,6 +575,7 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
 // for an albedo of 4 pi.
 fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, inside: DiffusionWay) -> vec3f {
     let spacing = body.grid.spacing;
+    let start = voxelization_local(body.grid, position);
     var sum = vec3f(0.0f);
     var single: DiffusionSingle;
     single.last = inside.surface;
@@ -503,8 +585,10 @@ fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, in
         // The grid knows nothing finer than half a spacing. Light falls off by the square of the distance as if by
         // an optical depth of its logarithm.
         let squared = max(dot(way, way), 0.25f);
-        let depth = body.extinction * (diffusion_density_towards(single, place) * sqrt(squared)) + log(4.0f * squared);
-        let power = light_power(light, way * inverseSqrt(max(dot(way, way), 1e-12f)));
+        let toward_light = way * inverseSqrt(max(dot(way, way), 1e-12f));
+        let dense = diffusion_density_towards(single, place, start, toward_eye, toward_light, sqrt(squared));
+        let depth = body.extinction * (dense * sqrt(squared)) + log(4.0f * squared);
+        let power = light_power(light, toward_light);
         sum += power * diffusion_single_piece(&single, place, depth, end == 0u);
     }
     return 4.0f / (spacing * spacing) * sum;
@@ -589,7 +673,7 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
             );
             if (EFFECT_DIFFUSION) {
                 let both = angles * diffusion_angles(cosine_light);
-                sent += lit * entered * vec3f(
+                sent += lit * entered * inside.covered * vec3f(
                     diffusion_local(cosine_eye, cosine_light, law.x, body.gamma.x, body.milne, node.x, gap.x, both.x),
                     diffusion_local(cosine_eye, cosine_light, law.y, body.gamma.y, body.milne, node.y, gap.y, both.y),
                     diffusion_local(cosine_eye, cosine_light, law.z, body.gamma.z, body.milne, node.z, gap.z, both.z),

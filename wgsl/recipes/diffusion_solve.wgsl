@@ -19,6 +19,9 @@
 //    From no light at all, with the finest `fluence` cleared, a first cycle sweeps on the way up alone, and not on
 //    the finest level.
 // 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
+// With the flux limiter conductances of the finest level are limited by the fluence as it is: in `diffusion_solve_sweep`,
+// `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each cycle, `diffusion_solve_coarsen`, whose
+// conductances are then made anew from level to level.
 // 4. `diffusion_solve_pack`, with `packed` cleared before, for the recipe that shades.
 
 // The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
@@ -28,11 +31,16 @@ const DIFFUSION_COARSE: f32 = 0.5f;
 // a row keep a third of an error that is linear along it.
 const DIFFUSION_TURNS: u32 = 6u;
 
+// Conductances are limited by the fluence: the flux limiter, on the finest level.
+override DIFFUSION_LIMITED: bool = false;
+
 struct DiffusionLevel {
     // Cells along an edge.
     cells: u32,
     // The colour of the sweep: the parity of x + y + z.
     color: u32,
+    // Extinction per voxel spacing where the density is 1, in each channel, for the flux limiter.
+    extinction: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> level: DiffusionLevel;
@@ -60,6 +68,31 @@ fn diffusion_index(cell: vec3u, cells: u32) -> u32 {
     return cell.x + cells * (cell.y + cells * cell.z);
 }
 
+// A face's conductances in each channel with the flux limiter: between a cell and the next one along an axis.
+fn diffusion_limited(conductance: f32, lower: u32, upper: u32, axis: u32) -> vec3f {
+    // A conductance is the open share over the optical distance.
+    let thickness = level.extinction * (diffusion_open(nodes[lower] & 255u, nodes[upper], axis) / conductance);
+    let one = fluence[lower];
+    let other = fluence[upper];
+    return conductance * vec3f(
+        diffusion_limit(one.x, other.x, thickness.x),
+        diffusion_limit(one.y, other.y, thickness.y),
+        diffusion_limit(one.z, other.z, thickness.z),
+    );
+}
+
+// What a face adds to the coarser face that it is part of, which all channels share: with the flux limiter the largest
+// of theirs, so that no correction overshoots.
+fn diffusion_joined(lower: u32, axis: u32) -> f32 {
+    let conductance = faces[3u * lower + axis];
+    if (DIFFUSION_LIMITED && conductance > 0.0f) {
+        let stride = select(select(level.cells * level.cells, level.cells, axis == 1u), 1u, axis == 0u);
+        let each = diffusion_limited(conductance, lower, lower + stride, axis);
+        return max(each.x, max(each.y, each.z));
+    }
+    return conductance;
+}
+
 // Makes the coarser level's equations. A workgroup is a tile, and each of its lanes a coarse cell.
 @compute @workgroup_size(8)
 fn diffusion_solve_coarsen(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -77,7 +110,9 @@ fn diffusion_solve_coarsen(@builtin(workgroup_id) group: vec3u, @builtin(local_i
         let child = diffusion_index(corner + step, level.cells);
         reaction += reactions[child];
         for (var axis = 0u; axis < 3u; axis++) {
-            conductances[axis] += select(0.0f, faces[3u * child + axis], step[axis] == 1u);
+            if (step[axis] == 1u) {
+                conductances[axis] += diffusion_joined(child, axis);
+            }
         }
     }
     let parent = diffusion_index(corner / 2u, (level.cells + 1u) / 2u);
@@ -110,28 +145,43 @@ fn diffusion_solve_list(@builtin(global_invocation_id) invocation: vec3u) {
 // Sums over a cell's faces: the fluence beyond each, times its conductance; and the conductances.
 struct DiffusionFaces {
     inflow: vec3f,
-    conductances: f32,
+    conductances: vec3f,
 }
 
 fn diffusion_across(cell: vec3u, index: u32) -> DiffusionFaces {
-    var sums = DiffusionFaces(vec3f(0.0f), 0.0f);
+    var inflow = vec3f(0.0f);
+    // Of all channels alike, and of each.
+    var alike = 0.0f;
+    var each = vec3f(0.0f);
     var stride = 1u;
     for (var axis = 0u; axis < 3u; axis++) {
         let above = faces[3u * index + axis];
         if (above > 0.0f) {
-            sums.inflow += above * fluence[index + stride].xyz;
-            sums.conductances += above;
+            if (DIFFUSION_LIMITED) {
+                let limited = diffusion_limited(above, index, index + stride, axis);
+                inflow += limited * fluence[index + stride].xyz;
+                each += limited;
+            } else {
+                inflow += above * fluence[index + stride].xyz;
+                alike += above;
+            }
         }
         if (cell[axis] > 0u) {
             let below = faces[3u * (index - stride) + axis];
             if (below > 0.0f) {
-                sums.inflow += below * fluence[index - stride].xyz;
-                sums.conductances += below;
+                if (DIFFUSION_LIMITED) {
+                    let limited = diffusion_limited(below, index - stride, index, axis);
+                    inflow += limited * fluence[index - stride].xyz;
+                    each += limited;
+                } else {
+                    inflow += below * fluence[index - stride].xyz;
+                    alike += below;
+                }
             }
         }
         stride *= level.cells;
     }
-    return sums;
+    return DiffusionFaces(inflow, each + alike);
 }
 
 // The place in a tile of one of the 32 cells of a colour.
@@ -154,9 +204,9 @@ fn diffusion_relax_cell(cell: vec3u) {
     let across = diffusion_across(cell, index);
     let load = right[index];
     fluence[index] = vec4f(
-        diffusion_relax(load.x, across.inflow.x, across.conductances, reaction.x),
-        diffusion_relax(load.y, across.inflow.y, across.conductances, reaction.y),
-        diffusion_relax(load.z, across.inflow.z, across.conductances, reaction.z),
+        diffusion_relax(load.x, across.inflow.x, across.conductances.x, reaction.x),
+        diffusion_relax(load.y, across.inflow.y, across.conductances.y, reaction.y),
+        diffusion_relax(load.z, across.inflow.z, across.conductances.z, reaction.z),
         0.0f,
     );
 }

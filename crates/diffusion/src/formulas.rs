@@ -589,6 +589,47 @@ fn nodes() -> Vec<Formula> {
             if least >= -1e-6 { Ok(()) } else { Err(format!("a weight of {least}")) }
         })
         .build(),
+        formula(M, "diffusion_limit", mirror::limit, oracle::limit, |draws| {
+            let fluence = |draws: &mut Draws<'_>| match draws.below(6) {
+                0 => 0.0,
+                1 => draws.magnitude(-59, 58),
+                2 => -draws.between(0.0, 1.0),
+                _ => draws.between(0.01, 1.0),
+            };
+            let one = fluence(draws);
+            let other = if draws.below(4) == 0 { draws.nudged(one, 3) } else { fluence(draws) };
+            let thickness = match draws.below(4) {
+                0 => draws.magnitude(-40, 58),
+                1 => draws.nudged(mirror::DIFFUSION_THINNEST_FACE, 3),
+                _ => draws.between(0.05, 4.0),
+            };
+            (one, if other.is_subnormal() { 0.0 } else { other }, thickness)
+        })
+        .edge("equal fluences", |(one, other, _)| one == other && one > 0.0)
+        .edge("no light", |(one, other, _)| one <= 0.0 && other <= 0.0)
+        .edge("light on one side alone", |(one, other, _)| one > 0.0 && other <= 0.0)
+        .edge("thin matter", |(one, other, thickness)| thickness < 1e-6 && one > 2.0 * other && other > 0.0)
+        .edge("thick matter", |(one, other, thickness)| thickness > 1e3 && one != other)
+        .invariant("in [0, 1] to rounding", |_, factor: f32| within("factor", factor, 0.0, 1.0 + 2e-6))
+        .pair(
+            "symmetric",
+            |(one, other, thickness)| (other, one, thickness),
+            |_, factor: f32, other: f32| near("factor", factor.into(), other.into(), 0.0),
+        )
+        .hard_case("equal fluences", (1.0, 1.0, 1.0), (&[1.0], 0.0), ("diffusion_limit_naive", f64::INFINITY))
+        .hard_case(
+            "a gentle slope",
+            (1.0, 1.0 + 2f32.powi(-10), 1.0),
+            (&[0.999_999_936_5], 2e-7),
+            ("diffusion_limit_naive", 1e-2),
+        )
+        .hard_case("no light", (0.0, 0.0, 1.0), (&[1.0], 0.0), ("diffusion_limit_naive", f64::INFINITY))
+        .build(),
+        formula(M, "diffusion_limit_naive", mirror::limit_naive, oracle::limit_naive, |draws| {
+            (draws.between(0.1, 0.4), draws.between(0.5, 1.0), draws.between(0.5, 2.0))
+        })
+        .benign(2e-4)
+        .build(),
         formula(M, "diffusion_relax", mirror::relax, oracle::relax, |draws| {
             let amount = |draws: &mut Draws<'_>| match draws.below(4) {
                 0 => 0.0,

@@ -50,6 +50,10 @@ pub const DIFFUSION_OUTERMOST: f32 = 20.0;
 pub const DIFFUSION_LEAST_GAMMA: f32 = 1e-6;
 /// The largest optical depth of a node.
 pub const DIFFUSION_DEEPEST: f32 = 1e6;
+/// The least optical distance of two nodes.
+pub const DIFFUSION_THINNEST_FACE: f32 = 1e-9;
+/// The slope of the fluence's logarithm per mean free path from which the flux limiter is a closed form.
+pub const DIFFUSION_STEEP: f32 = 2.0;
 /// The largest optical depth along a line.
 pub const DIFFUSION_FARTHEST: f32 = 1e15;
 
@@ -343,6 +347,28 @@ pub fn slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
     let falling = (1.0 / below.max(DIFFUSION_LEAST_STEP)).min(steepest);
     let rising = (1.0 / above.max(DIFFUSION_LEAST_STEP)).min(steepest);
     wanted.clamp(-falling, rising)
+}
+
+/// Returns the factor of a flux limiter on the conductance between two nodes (Levermore and Pomraning).
+pub fn limit(one: f32, other: f32, thickness: f32) -> f32 {
+    let a = one.max(0.0);
+    let b = other.max(0.0);
+    let share = (a - b).abs() / (a + b).max(1e-30);
+    let slope = 2.0 * share / thickness.clamp(DIFFUSION_THINNEST_FACE, DIFFUSION_FARTHEST);
+    if slope < DIFFUSION_STEEP {
+        let s = slope * slope;
+        let above = 1.0 + s * (0.06666667 + s * (0.0008791209 + s * 1.4800015e-6));
+        let below = 1.0 + s * (0.13333334 + s * (0.0034188034 + s * 1.776002e-5));
+        return above / below;
+    }
+    let left = (-(2.0 * slope).min(DIFFUSION_OPAQUE)).exp();
+    3.0 * ((1.0 + left) / (1.0 - left) - 1.0 / slope) / slope
+}
+
+/// Computes the flux limiter as it is printed, a naive form.
+pub fn limit_naive(one: f32, other: f32, thickness: f32) -> f32 {
+    let slope = (one - other).abs() / (thickness * 0.5 * (one + other));
+    3.0 * (1.0 / slope.tanh() - 1.0 / slope) / slope
 }
 
 /// Returns a node's value that solves its equation for given neighbours.

@@ -2,7 +2,7 @@
 
 use super::ladder::Ladder;
 use crate::{Geometry, Rung, Spectrum};
-use lapidary_scene::solver::{Method, Paths, Reflectance, Stencil};
+use lapidary_scene::solver::{Diffusion, Method, Paths, Reflectance, Stencil};
 use std::fmt;
 
 /// How much time a body's technique may take.
@@ -83,18 +83,22 @@ const RUNGS: [(Technique, [Rung; 3]); 8] = [
         // The drift costs what the cheap closed form costs, and is the nearest to the walks.
         [Rung::Diffuse(Reflectance::Drift); 3],
     ),
-    (Technique::Translucent, [paths(32, Method::Godunov), Rung::Diffusion(64), Rung::Diffusion(128)]),
+    (Technique::Translucent, [paths(32, Method::Godunov), diffusion(64), diffusion(128)]),
     (
         Technique::OpticalPath,
         [paths(32, Method::Tiled(Stencil::Corners)), paths(64, Method::Godunov), paths(128, Method::Godunov)],
     ),
-    (Technique::Diffusion, [Rung::Diffusion(32), Rung::Diffusion(64), Rung::Diffusion(128)]),
+    (Technique::Diffusion, [diffusion(32), diffusion(64), diffusion(128)]),
     (Technique::Opaque, [Rung::Diffuse(Reflectance::Lambert); 3]),
     (Technique::ThinWall, [Rung::Surface; 3]),
 ];
 
 const fn inside(geometry: Geometry, hits: u32, spectrum: Spectrum) -> Rung {
     Rung::Inside { geometry, hits, spectrum }
+}
+
+const fn diffusion(cells: u32) -> Rung {
+    Rung::Diffusion(Diffusion::of(cells))
 }
 
 const fn paths(cells: u32, method: Method) -> Rung {

@@ -1,7 +1,7 @@
 //! The rungs of the ladder: how exactly light is followed.
 
 use lapidary_scene::nearest;
-use lapidary_scene::solver::{NoSolver, Paths, Reflectance, Solver};
+use lapidary_scene::solver::{Diffusion, NoSolver, Paths, Reflectance, Solver};
 use std::fmt;
 use std::str::FromStr;
 
@@ -25,8 +25,8 @@ pub enum Rung {
     Diffuse(Reflectance),
     /// Light along the cheapest paths through a body, on voxels.
     OpticalPath(Paths),
-    /// Diffusion of light through a body, on a grid with this number of cells along each edge.
-    Diffusion(u32),
+    /// Diffusion of light through a body, on a grid.
+    Diffusion(Diffusion),
     /// The reference, on the CPU in f64: spectral for clear stones, random walks for scattering
     /// bodies.
     Reference,
@@ -68,7 +68,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 38] = [
+pub const NAMES: [&str; 39] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -106,12 +106,13 @@ pub const NAMES: [&str; 38] = [
     "tiled-26-64",
     "godunov-64",
     "diffusion-64",
+    "diffusion-limited-64",
     "reference",
 ];
 /// The grammar of rung names, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+split|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
-     quadrature, spherical, power, drift, blur, or diffusion-CELLS with 16 to 128 cells, such as diffusion-64, or \
+     quadrature, spherical, power, drift, blur, or diffusion[-limited]-CELLS with 16 to 128 cells, such as diffusion-64, or \
      (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 cells, such as godunov-64; \
      for both reference";
 
@@ -184,7 +185,7 @@ impl From<Solver> for Rung {
         match solver {
             Solver::Diffuse(reflectance) => Self::Diffuse(reflectance),
             Solver::OpticalPath(paths) => Self::OpticalPath(paths),
-            Solver::Diffusion(cells) => Self::Diffusion(cells),
+            Solver::Diffusion(diffusion) => Self::Diffusion(diffusion),
         }
     }
 }
@@ -197,7 +198,7 @@ impl fmt::Display for Rung {
             Self::Surface => return f.write_str("surface"),
             Self::Diffuse(reflectance) => return write!(f, "{}", Solver::Diffuse(*reflectance)),
             Self::OpticalPath(paths) => return write!(f, "{}", Solver::OpticalPath(*paths)),
-            Self::Diffusion(cells) => return write!(f, "{}", Solver::Diffusion(*cells)),
+            Self::Diffusion(diffusion) => return write!(f, "{}", Solver::Diffusion(*diffusion)),
             Self::Reference => return f.write_str("reference"),
         };
         let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);

@@ -24,7 +24,7 @@ use cells::Cells;
 use glam::Vec3;
 use lapidary_gpu::GpuError;
 use lapidary_plan::{Effect, Note, casting, enclosed};
-use lapidary_scene::{Bounds, Density, Light, Material, Object};
+use lapidary_scene::{Bounds, Density, Light, Material, Object, solver};
 use levels::Levels;
 use source::Source;
 use std::ops::Range;
@@ -84,15 +84,16 @@ pub(super) fn pass(
     builder: &mut Builder<'_>,
     lighting: &Lighting<'_>,
     part: &Part<'_>,
-    cells: u32,
+    diffusion: solver::Diffusion,
     source: &str,
 ) -> Result<ScenePass, RenderError> {
+    let cells = diffusion.cells;
     let LightMaps { mut maps, lit, .. } = LightMaps::of(builder, lighting, part, cells)?;
     let around = lighting.largest_around();
     let harmonics = lighting.has_environment().then(|| lighting.harmonics(builder));
     let mut pass = ScenePass::default();
     let mut bodies = Vec::new();
-    for (constants, objects) in part.variants(|drawn| drawn.decisions.constants()) {
+    for (constants, objects) in part.variants(constants_of) {
         let pipeline = builder.render_pipeline(&PipelineSource {
             recipe: part.rung.recipe(),
             source,
@@ -103,7 +104,7 @@ pub(super) fn pass(
         })?;
         let mut shared = lighting.shared(builder, pipeline)?;
         shared.extend([(4, lit.views.into()), (5, lit.maps)]);
-        let add = Add { pipeline, constants: &constants, cells, lit: &lit, around, harmonics, part };
+        let add = Add { pipeline, constants: &constants, diffusion, lit: &lit, around, harmonics, part };
         let mut drawn_bodies = Vec::new();
         for drawn in objects {
             let (body, of_body) =
@@ -117,12 +118,25 @@ pub(super) fn pass(
     Ok(pass)
 }
 
+/// The recipe follows ways from voxel to voxel where densities differ by more than this factor. Optical depths of pieces
+/// between two points are off by it at most.
+const VARIED: f32 = 8.0;
+
+/// Returns the overrides of the recipe for an object.
+fn constants_of(drawn: &Drawn<'_>) -> Vec<(&'static str, f64)> {
+    let density = drawn.object.material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
+    let is_varied = drawn.decisions.has(Effect::ExtinctionPerVoxel) && density.most() > VARIED * density.least();
+    let mut constants = drawn.decisions.constants();
+    constants.push(("DIFFUSION_VARIED", f64::from(u8::from(is_varied))));
+    constants
+}
+
 /// Inputs for adding a body, besides the body itself.
 struct Add<'a> {
     pipeline: PipelineId,
     /// Values of the recipes' overrides for this variant.
     constants: &'a [(&'a str, f64)],
-    cells: u32,
+    diffusion: solver::Diffusion,
     lit: &'a Lit,
     /// The largest irradiance from all around.
     around: Vec3,
@@ -149,7 +163,7 @@ impl Add<'_> {
         (shapes, maps): (&Shapes, &mut ReflectiveShadowMaps),
     ) -> Result<(Body, Option<BodyDiffusion>), RenderError> {
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
-        let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.cells);
+        let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.diffusion.cells);
         let index = if decisions.has(Effect::Dielectric) { material.ior } else { 1.0 };
         let matter = Matter::of(material, grid, index);
         let shape = shapes.of(builder, name, drawn.object)?;
@@ -212,7 +226,8 @@ impl Add<'_> {
         let of_voxel = densities.as_ref().map(|densities| densities.buffer);
         let of_body = cells::Body { matter, material, largest: received.largest, harmonics: self.harmonics };
         let cells = Cells::new(builder, grid, (shape, mesh), self.constants, of_body, (tiles, of_voxel))?;
-        let levels = Levels::new(builder, grid, &cells, self.part.settings.diffusion)?;
+        let limited = self.diffusion.limited.then_some(matter.extinction);
+        let levels = Levels::new(builder, grid, &cells, limited, self.part.settings.diffusion)?;
         let source = Source::new(
             builder,
             grid,

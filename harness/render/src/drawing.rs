@@ -123,7 +123,7 @@ pub(super) fn scene_pass(
                 translucent::pass(builder, (lighting, shadows.as_ref()), part, reflectance, source)?
             }
             Rung::OpticalPath(paths) => optical_path::pass(builder, lighting, part, paths, source)?,
-            Rung::Diffusion(cells) => diffusion::pass(builder, lighting, part, cells, source)?,
+            Rung::Diffusion(diffusion) => diffusion::pass(builder, lighting, part, diffusion, source)?,
             _ if settings.gem.deferred => {
                 gem::pass(builder, lighting, part, source, ("gem_deferred_fragment", deferred))?
             }

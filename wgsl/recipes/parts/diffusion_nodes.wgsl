@@ -22,6 +22,13 @@ fn diffusion_word(parts: u32, depth: f32) -> u32 {
     return parts | (u32(clamp(depth / DIFFUSION_NODE_DEPTH, 0.0f, 1.0f) * 16777215.0f) << 8u);
 }
 
+// The share of the face between two voxels that is open: eighths of the lower one that meet filled ones of the upper,
+// along an axis.
+fn diffusion_open(lower: u32, upper: u32, axis: u32) -> f32 {
+    let mask = select(select(0x0fu, 0x33u, axis == 1u), 0x55u, axis == 0u);
+    return 0.25f * f32(countOneBits((lower >> (1u << axis)) & upper & mask));
+}
+
 // The centroid of the filled eighths from the voxel's centre, in voxel spacings.
 fn diffusion_centroid(word: u32) -> vec3f {
     let all = max(f32(countOneBits(word & 255u)), 1.0f);

@@ -62,6 +62,12 @@ pub(super) fn promises() -> Vec<Promise> {
             |_, slope: f32| that(slope.abs() <= 100.01, || format!("slope {slope}")),
         ),
         holds(
+            "diffusion_limit",
+            "in [0, 1] for fluences of magnitudes up to 1e18",
+            |draws| (large(draws), large(draws), any_finite(draws)),
+            |_, factor: f32| that((0.0..=1.000_01).contains(&factor), || format!("factor {factor}")),
+        ),
+        holds(
             "diffusion_relax",
             "0 if conductances and reaction are not positive",
             |draws| (large(draws), large(draws), -large(draws).abs(), -large(draws).abs()),

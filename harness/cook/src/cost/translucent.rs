@@ -14,7 +14,7 @@ use lapidary_scene::Scene;
 pub const LADDER: Ladder = Ladder { name: "translucent", tables, plots: |_| Vec::new(), whole };
 
 /// The rungs: Lambert's law, optical paths, diffusion, and the walks themselves.
-pub const RUNGS: [&str; 10] = [
+pub const RUNGS: [&str; 11] = [
     "lambert",
     LAMBERT_SHADOWED,
     "tiled-26-32",
@@ -23,6 +23,7 @@ pub const RUNGS: [&str; 10] = [
     "godunov-128",
     "diffusion-32",
     "diffusion-64",
+    "diffusion-limited-64",
     "diffusion-128",
     REFERENCE,
 ];

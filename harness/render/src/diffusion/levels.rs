@@ -7,6 +7,7 @@ use crate::record::Record;
 use crate::settings::DiffusionOptions;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
+use glam::Vec3;
 use lapidary_gpu::GpuError;
 
 const RECIPE: &str = "diffusion_solve";
@@ -46,11 +47,12 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// Creates the pipelines and buffers.
+    /// Creates the pipelines and buffers. `limited` is the extinction per voxel spacing, if a flux limiter is asked for.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
         cells: &Cells,
+        limited: Option<Vec3>,
         options: DiffusionOptions,
     ) -> Result<Self, ShaderError> {
         use wgpu::BufferUsages as Usage;
@@ -58,45 +60,59 @@ impl Levels {
         while let Some(side) = sides.last().copied().filter(|side| *side > TILE) {
             sides.push(side.div_ceil(2));
         }
-        let made: Vec<Level> = (0..sides.len()).map(|number| level(builder, &sides, number, cells)).collect();
+        let made: Vec<Level> = (0..sides.len()).map(|number| level(builder, &sides, number, cells, limited)).collect();
         let packed = builder.buffer("fluence to look up", 8 * grid.count() as u64, Usage::STORAGE | Usage::COPY_DST);
         let source = lapidary_wgsl::recipe_source(RECIPE);
-        let mut kernel = |entry: &str| builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_{entry}"), &[]);
-        let kernels = Kernels {
-            coarsen: kernel("coarsen")?,
-            list: kernel("list")?,
-            sweep: kernel("sweep")?,
-            coarsest: kernel("coarsest")?,
-            restrict: kernel("restrict")?,
-            prolong: kernel("prolong")?,
-            pack: kernel("pack")?,
+        let mut kernel = |entry: &str, limited: bool| {
+            let constants = [("DIFFUSION_LIMITED", f64::from(u8::from(limited)))];
+            builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_{entry}"), &constants)
         };
+        let is_limited = limited.is_some();
+        let kernels = Kernels {
+            coarsen: [kernel("coarsen", is_limited)?, kernel("coarsen", false)?],
+            list: kernel("list", false)?,
+            sweep: [kernel("sweep", is_limited)?, kernel("sweep", false)?],
+            coarsest: kernel("coarsest", false)?,
+            restrict: [kernel("restrict", is_limited)?, kernel("restrict", false)?],
+            prolong: kernel("prolong", false)?,
+            pack: kernel("pack", false)?,
+        };
+        let residual_kernel = if options.residual { Some(kernel("residual", is_limited)?) } else { None };
+        let of_level = |kernels: [PipelineId; 2], number: usize| kernels[number.min(1)];
+        // What the flux limiter reads.
+        let nodes = (4, cells.nodes.into());
         let last = made.len() - 1;
         let mut coarsen = Vec::new();
-        for (level, coarser) in made.iter().zip(&made[1..]) {
-            let equations = [(0, coarser.faces.into()), (1, coarser.reactions.into())];
-            coarsen.push(level.pass_over_tiles(builder, kernels.coarsen, 0, &equations));
+        let mut again = Vec::new();
+        for (number, (level, coarser)) in made.iter().zip(&made[1..]).enumerate() {
+            let equations = [(0, coarser.faces.into()), (1, coarser.reactions.into()), nodes];
+            coarsen.push(level.pass_over_tiles(builder, kernels.coarsen[1], 0, &equations));
             coarsen.push(coarser.pass_over_all(builder, kernels.list, tiles::count(coarser.cells)));
+            if is_limited {
+                again.push(level.pass_over_tiles(builder, of_level(kernels.coarsen, number), 0, &equations));
+            }
         }
         let sweeps =
-            |builder: &mut Builder<'_>, cycle: &mut Vec<Dispatch>, level: &Level, colors: [usize; 2], count| {
+            |builder: &mut Builder<'_>, cycle: &mut Vec<Dispatch>, number: usize, colors: [usize; 2], count| {
+                let kernel = of_level(kernels.sweep, number);
                 for _ in 0..count {
-                    cycle.extend(colors.map(|color| level.pass_over_tiles(builder, kernels.sweep, color, &[])));
+                    cycle.extend(colors.map(|color| made[number].pass_over_tiles(builder, kernel, color, &[nodes])));
                 }
             };
         let cycle_of = |builder: &mut Builder<'_>, is_first: bool| {
-            let mut cycle = Vec::new();
+            // Nothing is limited before there is light.
+            let mut cycle = if is_first { Vec::new() } else { again.clone() };
             for number in 0..last {
                 let (level, coarser) = (&made[number], &made[number + 1]);
-                sweeps(builder, &mut cycle, level, [0, 1], if is_first { 0 } else { SWEEPS });
-                let coarser = [(2, coarser.fluence.into()), (3, coarser.right.into())];
-                cycle.push(level.pass_over_tiles(builder, kernels.restrict, 0, &coarser));
+                sweeps(builder, &mut cycle, number, [0, 1], if is_first { 0 } else { SWEEPS });
+                let coarser = [(2, coarser.fluence.into()), (3, coarser.right.into()), nodes];
+                cycle.push(level.pass_over_tiles(builder, of_level(kernels.restrict, number), 0, &coarser));
             }
             cycle.push(made[last].pass_over_tiles(builder, kernels.coarsest, 0, &[]));
             for number in (0..last).rev() {
                 let (level, coarser) = (&made[number], &made[number + 1]);
                 cycle.push(level.pass_over_tiles(builder, kernels.prolong, 0, &[(2, coarser.fluence.into())]));
-                sweeps(builder, &mut cycle, level, [1, 0], if is_first && number == 0 { 0 } else { SWEEPS });
+                sweeps(builder, &mut cycle, number, [1, 0], if is_first && number == 0 { 0 } else { SWEEPS });
             }
             cycle
         };
@@ -105,11 +121,10 @@ impl Levels {
         let packing = [(4, cells.nodes.into()), (5, packed.into())];
         let pack = made[0].pass_over_tiles(builder, kernels.pack, 0, &packing);
         let mut residual = None;
-        if options.residual {
-            let kernel = builder.compute_pipeline(RECIPE, &source, &format!("{RECIPE}_residual"), &[])?;
+        if let Some(kernel) = residual_kernel {
             let usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
             let sums = builder.buffer("residuals", 32 * u64::from(tiles::count(grid.cells)), usage);
-            residual = Some((sums, made[0].pass_over_tiles(builder, kernel, 0, &[(6, sums.into())])));
+            residual = Some((sums, made[0].pass_over_tiles(builder, kernel, 0, &[(6, sums.into()), nodes])));
         }
         Ok(Self { levels: made, residual, options, packed, coarsen, first, cycle, pack })
     }
@@ -187,21 +202,26 @@ impl Levels {
 
 /// The recipe's pipelines.
 struct Kernels {
-    coarsen: PipelineId,
+    coarsen: [PipelineId; 2],
     list: PipelineId,
-    sweep: PipelineId,
+    /// Of the finest level, and of the others.
+    sweep: [PipelineId; 2],
     coarsest: PipelineId,
-    restrict: PipelineId,
+    restrict: [PipelineId; 2],
     prolong: PipelineId,
     pack: PipelineId,
 }
 
 /// Creates the buffers of the level with this number; the finest has the equations of `cells`.
-fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells) -> Level {
+fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells, limited: Option<Vec3>) -> Level {
     use wgpu::BufferUsages as Usage;
     let side = sides[number];
     let voxels = u64::from(side).pow(3);
-    let record = |color: u32| Record::new("DiffusionLevel").with("cells", side).with("color", color);
+    // Read by the flux limiter alone.
+    let extinction = limited.unwrap_or_default();
+    let record = |color: u32| {
+        Record::new("DiffusionLevel").with("cells", side).with("color", color).with("extinction", extinction)
+    };
     let records = [0, 1].map(|color| builder.uniform("level", record(color)));
     let mut storage = |what: &str, bytes: u64| {
         builder.buffer(&format!("{what} of level {number}"), bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)

@@ -27,10 +27,21 @@ struct Lone {
 impl Lone {
     /// Sets up a body of grey matter, of this extinction and share of absorption.
     fn of(mesh: Mesh, cells: u32, matter: (f32, f32), cycles: u32) -> Self {
-        Self::with(mesh, cells, matter, DiffusionOptions { cycles, residual: true, ..DiffusionOptions::default() })
+        Self::with(
+            mesh,
+            cells,
+            matter,
+            (DiffusionOptions { cycles, residual: true, ..DiffusionOptions::default() }, false),
+        )
     }
 
-    fn with(mesh: Mesh, cells: u32, (extinction, absorbed): (f32, f32), options: DiffusionOptions) -> Self {
+    /// The same, with other options and perhaps with the flux limiter.
+    fn with(
+        mesh: Mesh,
+        cells: u32,
+        (extinction, absorbed): (f32, f32),
+        (options, is_limited): (DiffusionOptions, bool),
+    ) -> Self {
         let medium = Medium::isotropic(Vec3::splat(extinction * (1.0 - absorbed)), Vec3::splat(extinction * absorbed));
         let material = Material { medium: Some(medium), ..Material::standard() };
         let object = Object::new("body", mesh, material);
@@ -43,7 +54,8 @@ impl Lone {
         let constants = [("EFFECT_SURFACE", 0.0), ("EFFECT_ENVIRONMENT", 0.0)];
         let cells = Cells::new(&mut builder, grid, (&object.mesh, &mesh), &constants, of_body, (tiles, None));
         let cells = cells.expect("the recipe");
-        let levels = Levels::new(&mut builder, grid, &cells, options).expect("the recipe");
+        let limited = is_limited.then_some(matter.extinction);
+        let levels = Levels::new(&mut builder, grid, &cells, limited, options).expect("the recipe");
         cells.encode_voxels(&mut builder);
         cells.encode(&mut builder);
         levels.encode_equations(&mut builder);
@@ -112,7 +124,32 @@ impl Lone {
     /// Returns what is left of the equations, over the right side, both as root mean squares; and the
     /// share of what is put in that neither leaves nor is absorbed.
     fn residual(&self, right: &[f64], fluence: &[f64]) -> (f64, f64) {
-        let (faces, reactions) = (self.floats(self.faces), self.floats(self.reactions));
+        self.residual_of(&self.floats(self.faces), right, fluence)
+    }
+
+    /// Returns the conductances with the flux limiter for this fluence, and the largest flux through a face, over the mean of the
+    /// fluence of both cells. `extinction` is that of a voxel spacing.
+    fn limited(&self, extinction: f32, fluence: &[f64]) -> (Vec<f64>, f64) {
+        let (mut faces, nodes) = (self.floats(self.faces), self.executor.words(self.nodes).expect("read"));
+        let cells = self.grid.cells as usize;
+        let mut fastest = 0.0f64;
+        for (place, face) in faces.iter_mut().enumerate().filter(|(_, face)| **face > 0.0) {
+            let (lower, axis) = (place / 3, place % 3);
+            let upper = lower + [1, cells, cells * cells][axis];
+            let mask = [0x55, 0x33, 0x0f][axis];
+            let open = f64::from(((nodes[lower] & 255) >> (1 << axis) & nodes[upper] & mask).count_ones()) / 4.0;
+            let [one, other] = [fluence[lower], fluence[upper]];
+            let thickness = extinction * (open / *face) as f32;
+            *face *= f64::from(lapidary_diffusion::limit(one as f32, other as f32, thickness));
+            // The equations are 3 extinction times those of fluxes.
+            let flux = *face * (one - other).abs() / (3.0 * f64::from(extinction) * open);
+            fastest = fastest.max(flux / (0.5 * (one + other)));
+        }
+        (faces, fastest)
+    }
+
+    fn residual_of(&self, faces: &[f64], right: &[f64], fluence: &[f64]) -> (f64, f64) {
+        let reactions = self.floats(self.reactions);
         let cells = self.grid.cells as usize;
         let mut left = right.to_vec();
         let mut lost = 0.0;
@@ -305,7 +342,8 @@ fn islands_and_matter_that_loses_nothing_have_finite_light() {
 #[test]
 fn a_warm_start_goes_on_where_the_last_frame_ended() {
     let residuals = [false, true].map(|warm| {
-        let lone = Lone::with(sphere(1.0, 64), 32, (8.0, 0.01), DiffusionOptions { cycles: 2, warm, residual: true });
+        let lone =
+            Lone::with(sphere(1.0, 64), 32, (8.0, 0.01), (DiffusionOptions { cycles: 2, warm, residual: true }, false));
         let right = everywhere(&lone, 8.0);
         [(); 3].map(|()| lone.residual(&right, &lone.solve(&right)).0)
     });
@@ -321,4 +359,48 @@ fn nothing_that_a_material_may_hold_breaks_the_equations() {
         let fluence = lone.solve(&everywhere(&lone, 1.0));
         assert!(fluence.iter().all(|value| value.is_finite() && *value >= 0.0), "{matter:?}");
     }
+}
+
+/// A lamp's light in thin matter: without the limiter more flows through some face than there is; with it the equations are
+/// solved for conductances that the fluence itself limits.
+#[test]
+fn the_flux_limiter_keeps_the_flux_below_the_fluence() {
+    let (extinction, cells) = (0.5, 32);
+    let solved = |is_limited: bool, cycles: u32| {
+        let options = DiffusionOptions { cycles, residual: true, ..DiffusionOptions::default() };
+        let lone = Lone::with(sphere(1.0, 64), cells, (extinction, 0.01), (options, is_limited));
+        let mut right = vec![0.0; lone.grid.count()];
+        right[(0..)
+            .zip(lone.volumes())
+            .filter(|(_, volume)| *volume == 1.0)
+            .map(|(index, _)| index)
+            .nth(5_000)
+            .expect("a cell")] = 1.0;
+        let fluence = lone.solve(&right);
+        let (faces, fastest) = lone.limited(extinction * lone.grid.spacing, &fluence);
+        (lone, right, fluence, faces, fastest)
+    };
+    let (lone, right, fluence, faces, _) = solved(false, 14);
+    // Flux of diffusion itself, over the fluence.
+    let limits = lone
+        .floats(lone.faces)
+        .into_iter()
+        .zip(&faces)
+        .map(|(all, limited)| if all > 0.0 { limited / all } else { 1.0 });
+    let slowed = limits.fold(1.0, f64::min);
+    let (of_diffusion, _) = lone.residual(&right, &fluence);
+    let mut before = f64::INFINITY;
+    for cycles in [2, 4, 8, 16] {
+        let (lone, right, fluence, faces, fastest) = solved(true, cycles);
+        let (residual, unaccounted) = lone.residual_of(&faces, &right, &fluence);
+        println!(
+            "{cycles} cycles: residual {residual:.1e}, unaccounted {unaccounted:.1e}, flux {fastest:.3} of the fluence; diffusion's conductances are up to {:.1} times as large",
+            1.0 / slowed
+        );
+        assert!(fastest <= 1.0 && residual < before, "{cycles}: {fastest} {residual} {before}");
+        let told = lone.levels.residual(&lone.executor).expect("read").expect("asked for")[0];
+        assert!((told - residual).abs() < 1e-3 * residual + 1e-5, "{cycles}: {residual} {told}");
+        before = residual;
+    }
+    assert!(of_diffusion < 1e-3 && slowed < 0.5 && before < 2e-3, "{of_diffusion} {slowed} {before}");
 }

@@ -19,6 +19,7 @@ pub const MOST_CELLS: u32 = 256;
 pub const MOST_DIFFUSION_CELLS: u32 = MOST_CELLS / 2;
 /// What the names of rungs by diffusion begin with.
 const DIFFUSION: &str = "diffusion";
+const LIMITED: &str = "diffusion-limited";
 /// The number of voxels along an edge is a multiple of this, because the passes over voxels work in
 /// blocks that divide it along any axis.
 pub const MULTIPLE: u32 = 8;
@@ -51,9 +52,27 @@ pub enum Solver {
     Diffuse(Reflectance),
     /// Cheapest optical paths through the body.
     OpticalPath(Paths),
-    /// Diffusion through the body, with this number of cells along each edge of its grid: a multiple
-    /// of [`MULTIPLE`] from [`LEAST_CELLS`] to [`MOST_DIFFUSION_CELLS`].
-    Diffusion(u32),
+    /// Diffusion through the body.
+    Diffusion(Diffusion),
+}
+
+/// How light diffuses through a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Diffusion {
+    /// Number of cells along each edge of a body's grid: a multiple of [`MULTIPLE`] from [`LEAST_CELLS`] to
+    /// [`MOST_DIFFUSION_CELLS`].
+    pub cells: u32,
+    /// Whether a flux limiter keeps the flux below the fluence. It takes more time, and the light of several lights no
+    /// longer adds up.
+    pub limited: bool,
+}
+
+impl Diffusion {
+    /// Returns diffusion without a limiter, on a grid with this number of cells along each edge.
+    #[must_use]
+    pub const fn of(cells: u32) -> Self {
+        Self { cells, limited: false }
+    }
 }
 
 /// Why a text names no solver.
@@ -77,7 +96,8 @@ impl fmt::Display for Solver {
         match self {
             Self::Diffuse(reflectance) => f.write_str(reflectance.name()),
             Self::OpticalPath(Paths { cells, method }) => write!(f, "{method}-{cells}"),
-            Self::Diffusion(cells) => write!(f, "{DIFFUSION}-{cells}"),
+            Self::Diffusion(Diffusion { cells, limited: false }) => write!(f, "{DIFFUSION}-{cells}"),
+            Self::Diffusion(Diffusion { cells, limited: true }) => write!(f, "{LIMITED}-{cells}"),
         }
     }
 }
@@ -96,8 +116,9 @@ impl FromStr for Solver {
             let number = cells.parse().ok().filter(|_| is_number).filter(is_grid);
             number.ok_or_else(|| NoSolver::Cells { cells: cells.to_owned(), most })
         };
-        if method == DIFFUSION {
-            return Ok(Self::Diffusion(grid(MOST_DIFFUSION_CELLS)?));
+        if let Some((_, limited)) = [(DIFFUSION, false), (LIMITED, true)].into_iter().find(|(name, _)| *name == method)
+        {
+            return Ok(Self::Diffusion(Diffusion { cells: grid(MOST_DIFFUSION_CELLS)?, limited }));
         }
         let method: Method = method.parse().map_err(|_| NoSolver::Unknown)?;
         Ok(Self::OpticalPath(Paths { cells: grid(MOST_CELLS)?, method }))
