@@ -353,7 +353,7 @@ pub fn slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
 pub fn limit(one: f32, other: f32, thickness: f32) -> f32 {
     let a = one.max(0.0);
     let b = other.max(0.0);
-    let share = (a - b).abs() / (a + b).max(1e-30);
+    let share = (a - b).abs() / (a + b).max(1e-18);
     let slope = 2.0 * share / thickness.clamp(DIFFUSION_THINNEST_FACE, DIFFUSION_FARTHEST);
     if slope < DIFFUSION_STEEP {
         let s = slope * slope;

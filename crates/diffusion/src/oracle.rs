@@ -376,7 +376,7 @@ pub fn limit(one: f64, other: f64, thickness: f64) -> f64 {
     if difference == 0.0 {
         return 1.0;
     }
-    let slope = 2.0 * difference / (a + b).max(1e-30) / thickness.clamp(f64::from(THINNEST_FACE), 1e15);
+    let slope = 2.0 * difference / (a + b).max(1e-18) / thickness.clamp(f64::from(THINNEST_FACE), 1e15);
     if slope > 30.0 {
         return 3.0 * (1.0 - 1.0 / slope) / slope;
     }
