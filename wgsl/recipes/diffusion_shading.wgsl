@@ -296,8 +296,8 @@ fn diffusion_march(place: vec3f, along: vec3f, wanted: f32, dense: f32) -> vec2f
         // Next to the surface a voxel may hold no matter.
         let local = diffusion_density_about(place + (way + 0.5f) * along, select(-1.0f, dense, turn == 0u));
         if (local < 0.0f) {
-            way += 1.0f;
-            break;
+            // Beyond the matter; the mean is that up to its end.
+            return vec2f(way + 1.0f, gone / way);
         }
         let step = min((wanted - gone) / local, 1.0f);
         way += step;
@@ -308,9 +308,7 @@ fn diffusion_march(place: vec3f, along: vec3f, wanted: f32, dense: f32) -> vec2f
 
 // The mean density along a way from a place, where it is `dense`.
 fn diffusion_mean_density(place: vec3f, along: vec3f, way: f32, dense: f32) -> f32 {
-    let least = min(body.extinction.x, min(body.extinction.y, body.extinction.z)) * dense * way;
-    // Nearby it hardly varies; and where little light is left, it would need to be far off to matter.
-    if (way <= DIFFUSION_NEAR || least > 60.0f) {
+    if (way <= DIFFUSION_NEAR) {
         return dense;
     }
     let count = u32(clamp(ceil(0.5f * way), 1.0f, DIFFUSION_TOWARDS));
@@ -442,7 +440,9 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
     }
     inside.scattered = body.largest * eye.scattered * angles;
     inside.straight = vec3f(0.0f);
-    inside.covered = select(vec3f(1.0f), 1.0f - exp(-eye.gone), left);
+    // The way is cut where it has passed all pieces, in the extinction that they count in; from there on there is all of one.
+    let passed = extinction * (eye.gone.x / body.extinction.x) / dot(DIFFUSION_STEPS, vec4f(1.0f));
+    inside.covered = 1.0f - exp(-eye.gone / max(1.0f - passed, 1e-3f));
     if (EFFECT_ENVIRONMENT) {
         if (left) {
             // The angles' factor, since the local part is that of a half space, through which nothing comes.

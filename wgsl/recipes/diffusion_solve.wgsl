@@ -19,10 +19,11 @@
 //    From no light at all, with the finest `fluence` cleared, a first cycle sweeps on the way up alone, and not on
 //    the finest level.
 // 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
-// With the flux limiter conductances of the finest level are limited by the fluence as it is: in `diffusion_solve_sweep`,
-// `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each cycle, `diffusion_solve_coarsen`, whose
-// conductances are then made anew from level to level.
 // 4. `diffusion_solve_pack`, with `packed` cleared before, for the recipe that shades.
+// With the flux limiter conductances of the finest level are limited by the fluence as it is: in `diffusion_solve_sweep`,
+// `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each cycle, the first one too,
+// `diffusion_solve_coarsen`, whose conductances are then made anew from level to level. They read `nodes` and
+// `level.extinction`.
 
 // The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
 // within each coarse cell has slopes twice as steep as one that is linear.

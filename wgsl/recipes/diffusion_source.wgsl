@@ -271,12 +271,20 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
 }
 
 //+lamp_inside {
-// Unit vectors of a spiral over the sphere, as evenly spread as their number allows.
-fn diffusion_ray(index: u32, count: u32) -> vec3f {
-    let height = 1.0f - (2.0f * f32(index) + 1.0f) / f32(count);
+// Unit vectors of a spiral over a lamp's sphere or a spot light's cone, as evenly spread as their number allows.
+fn diffusion_ray(index: u32, count: u32, light: Light) -> vec3f {
+    // 1 less the cosine from the axis, of which little is left where the cone is narrow.
+    let below = (1.0f - light.edge) * ((f32(index) + 0.5f) / f32(count));
     // The golden angle as a share of 2^32; the product keeps the share of a whole turn.
     let turn = 6.2831853f * (f32((index * 2654435769u) >> 8u) / 16777216.0f);
-    return vec3f(sqrt(max(1.0f - height * height, 0.0f)) * vec2f(cos(turn), sin(turn)), height);
+    let across = sqrt(max(below * (2.0f - below), 0.0f)) * vec2f(cos(turn), sin(turn));
+    // An orthonormal basis about the axis; a lamp has none.
+    let axis = select(vec3f(0.0f, 0.0f, 1.0f), light.axis, any(light.axis != vec3f(0.0f)));
+    let side = select(-1.0f, 1.0f, axis.z >= 0.0f);
+    let a = -1.0f / (side + axis.z);
+    let first = vec3f(1.0f + side * axis.x * axis.x * a, side * axis.x * axis.y * a, -side * axis.x);
+    let second = vec3f(axis.x * axis.y * a, side + axis.y * axis.y * a, -axis.y);
+    return across.x * first + across.y * second + (1.0f - below) * axis;
 }
 //+lamp_inside }
 
@@ -286,11 +294,14 @@ fn diffusion_source_lamp(@builtin(global_invocation_id) ray: vec3u) {
     if (EFFECT_LAMP_INSIDE) {
         let count = 2u * source.grid.cells * source.grid.cells;
         if (ray.x < count && enclosed[ray.y] != 0u) {
-            let back = diffusion_ray(ray.x, count);
+            let lamp = lights[ray.y];
+            let back = -diffusion_ray(ray.x, count, lamp);
             let spacing = source.grid.spacing;
-            let share = light_power(lights[ray.y], back) * (12.566371f / (f32(count) * spacing * spacing)) / source.largest;
+            // The solid angle of a ray.
+            let apart = 6.2831853f * (1.0f - lamp.edge) / f32(count);
+            let share = light_power(lamp, back) * (apart / (spacing * spacing)) / source.largest;
             let energy = share * (1.0f - source.gamma) * (1.0f + source.gamma);
-            diffusion_march(voxelization_local(source.grid, lights[ray.y].place), back, -1.0f, energy);
+            diffusion_march(voxelization_local(source.grid, lamp.place), back, -1.0f, energy);
         }
     }
     //+lamp_inside }

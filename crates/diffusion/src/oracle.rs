@@ -368,8 +368,7 @@ pub fn slope(missing: f64, variance: f64, above: f64, below: f64) -> f64 {
     }
 }
 
-/// Gaussian quadrature of the mean cosine: of light whose radiance along a cosine m is that of e^(m R), the first moment
-/// over the mean is coth R - 1/R. Beyond a slope of 30 the closed form, in which nothing cancels any more.
+/// Quadrature: light whose radiance at a cosine m is e^(m R) has the mean cosine coth R - 1/R. Beyond a slope of 30 the closed form, in which nothing cancels any more.
 pub fn limit(one: f64, other: f64, thickness: f64) -> f64 {
     let [a, b] = [one, other].map(|fluence| fluence.max(0.0));
     let difference = (a - b).abs();
@@ -380,7 +379,7 @@ pub fn limit(one: f64, other: f64, thickness: f64) -> f64 {
     if slope > 30.0 {
         return 3.0 * (1.0 - 1.0 / slope) / slope;
     }
-    // (coth R - 1/R) / R is the integral of m^2 - 1 of half of e^(m R), by parts, over that of e^(m R): both are positive.
+    // By parts (coth R - 1/R) / R is the integral of (1 - m^2) / 2 times e^(m R), over that of e^(m R): nothing cancels.
     let (mut above, mut below) = (0.0, 0.0);
     let pieces = 64;
     for piece in 0..pieces {

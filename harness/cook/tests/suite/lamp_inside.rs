@@ -123,6 +123,34 @@ fn a_white_ball_sends_out_all_that_its_lamp_does() {
     }
 }
 
+/// The light of a spot, however narrow, is a share of a lamp's: its solid angle weighted by how its edge fades, over the sphere's.
+/// It shines across the eye's direction, so that what it adds on one side is missing on the other.
+#[test]
+fn a_narrow_spot_sends_out_its_share_of_a_lamps_light() {
+    let medium = || Medium::isotropic(Vec3::splat(16.0), Vec3::ZERO);
+    let sum = |light: Light| -> f64 {
+        let picture = drawn(&ball(1.0, medium(), vec![light]), "diffusion-64", 96);
+        picture.linear.iter().map(|pixel| f64::from(pixel[0])).sum()
+    };
+    let of_lamp = sum(lamp(Vec3::ZERO, Vec3::ONE));
+    let across = ball(1.0, medium(), vec![]).camera.eye.cross(Vec3::Y).normalize();
+    for outer in [0.02f64, 0.1, 0.5] {
+        let inner = 0.8 * outer;
+        let spot = Light::Spot {
+            position: Vec3::ZERO,
+            direction: across,
+            intensity: Vec3::ONE,
+            inner_angle: inner as f32,
+            outer_angle: outer as f32,
+        };
+        // The square of what fades evenly with the cosine has the mean 1/3.
+        let angle = (1.0 - inner.cos()) + (inner.cos() - outer.cos()) / 3.0;
+        let share = sum(spot) / of_lamp / (0.5 * angle);
+        println!("a spot of {outer}: {share:.4} of its share of a lamp's light");
+        assert!((share - 1.0).abs() < 0.06, "{outer}: {share}");
+    }
+}
+
 /// A lamp in the middle, one near the surface, and a spot, beside random walks.
 #[test]
 fn a_lamp_shines_through_a_body_as_walks_do() {

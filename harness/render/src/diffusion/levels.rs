@@ -100,8 +100,8 @@ impl Levels {
                 }
             };
         let cycle_of = |builder: &mut Builder<'_>, is_first: bool| {
-            // Nothing is limited before there is light.
-            let mut cycle = if is_first { Vec::new() } else { again.clone() };
+            // Also of no light at all, of which nothing is limited: the last frame has left its own.
+            let mut cycle = again.clone();
             for number in 0..last {
                 let (level, coarser) = (&made[number], &made[number + 1]);
                 sweeps(builder, &mut cycle, number, [0, 1], if is_first { 0 } else { SWEEPS });

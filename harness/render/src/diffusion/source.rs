@@ -43,12 +43,12 @@ pub(super) struct Buffers {
 /// Returns the irradiance to be counted as 1 for a lamp inside: all of its light then fills the sides of a voxel sixteen times,
 /// which the loads hold.
 pub(super) fn of_lamp(lamp: &Light, grid: VoxelGrid) -> Vec3 {
-    match *lamp {
-        Light::Directional { .. } => Vec3::ZERO,
-        Light::Point { intensity, .. } | Light::Spot { intensity, .. } => {
-            intensity * (4.0 * PI / (16.0 * grid.spacing * grid.spacing))
-        }
-    }
+    let (intensity, solid_angle) = match *lamp {
+        Light::Directional { .. } => return Vec3::ZERO,
+        Light::Point { intensity, .. } => (intensity, 4.0 * PI),
+        Light::Spot { intensity, outer_angle, .. } => (intensity, 4.0 * PI * (0.5 * outer_angle).sin().powi(2)),
+    };
+    intensity * (solid_angle / (16.0 * grid.spacing * grid.spacing))
 }
 
 impl Source {

@@ -19,6 +19,7 @@ pub const MOST_CELLS: u32 = 256;
 pub const MOST_DIFFUSION_CELLS: u32 = MOST_CELLS / 2;
 /// What the names of rungs by diffusion begin with.
 const DIFFUSION: &str = "diffusion";
+/// The same with the flux limiter.
 const LIMITED: &str = "diffusion-limited";
 /// The number of voxels along an edge is a multiple of this, because the passes over voxels work in
 /// blocks that divide it along any axis.
@@ -109,7 +110,7 @@ impl FromStr for Solver {
         if let Some((_, reflectance)) = REFLECTANCES.iter().find(|(name, _)| *name == text) {
             return Ok(Self::Diffuse(*reflectance));
         }
-        let (method, cells) = text.rsplit_once('-').ok_or(NoSolver::Unknown)?;
+        let (method, cells) = text.rsplit_once('-').filter(|_| text != LIMITED).ok_or(NoSolver::Unknown)?;
         let grid = |most: u32| {
             let is_grid = |cells: &u32| (LEAST_CELLS..=most).contains(cells) && cells.is_multiple_of(MULTIPLE);
             let is_number = cells.bytes().all(|byte| byte.is_ascii_digit());
