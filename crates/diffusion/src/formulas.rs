@@ -591,7 +591,7 @@ fn nodes() -> Vec<Formula> {
         .build(),
         formula(M, "diffusion_limit", mirror::limit, oracle::limit, |draws| {
             let fluence = |draws: &mut Draws<'_>| match draws.below(6) {
-                0 => 0.0,
+                0 => draws.pick(&[0.0, 1e-18]),
                 1 => draws.magnitude(-59, 58),
                 2 => -draws.between(0.0, 1.0),
                 _ => draws.between(0.01, 1.0),
