@@ -368,7 +368,8 @@ pub fn slope(missing: f64, variance: f64, above: f64, below: f64) -> f64 {
     }
 }
 
-/// Quadrature: light whose radiance at a cosine m is e^(m R) has the mean cosine coth R - 1/R. Beyond a slope of 30 the closed form, in which nothing cancels any more.
+/// Quadrature: light whose radiance at a cosine m is e^(m R) has the mean cosine coth R - 1/R. Beyond a slope of 30 the
+/// closed form, in which nothing cancels any more.
 pub fn limit(one: f64, other: f64, thickness: f64) -> f64 {
     let [a, b] = [one, other].map(|fluence| fluence.max(0.0));
     let difference = (a - b).abs();

@@ -42,6 +42,30 @@ fn sun(toward: Vec3, irradiance: Vec3) -> Light {
     Light::Directional { toward: toward.normalize(), irradiance }
 }
 
+/// A ball of this matter, of a radius of 8, under a sun at its side.
+fn ball(medium: Medium) -> Scene {
+    let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
+    scene_of(sphere(8.0, 96), medium, lights, (85.0, 10.0))
+}
+
+/// The picture by this many random walks a pixel, without the environment.
+fn walked(scene: &Scene, walks: u32, side: u32) -> Vec<[f32; 4]> {
+    let settings = Settings {
+        rung: "reference".parse().expect("a rung"),
+        without: Effects::of(&[Effect::Environment]),
+        walks: WalkOptions { walks, from: Origin::Lights, ..WalkOptions::default() },
+        ..Settings::of_size(side, side)
+    };
+    render::render(super::gpu(), scene, &settings).expect("walked").linear
+}
+
+/// Distances from walks without the flux limiter, and with it.
+fn without_and_with_limiter(scene: &Scene, walks: u32) -> [f64; 2] {
+    let side = 32;
+    let truth = walked(scene, walks, side);
+    ["diffusion-64", "diffusion-limited-64"].map(|rung| distance(&halved(&drawn(scene, rung, 2 * side)).linear, &truth))
+}
+
 /// Returns each rung with a goal, the goal, and its shares of the distance of Lambert's law with shadows from a picture
 /// of this side by random walks: at the best exposures, and at exposure 1.
 fn shares(name: &str, scene: &Scene, truth: &[[f32; 4]], side: u32) -> Vec<(&'static str, f64, [f64; 2])> {
@@ -74,14 +98,7 @@ fn two_scenes_and_a_light_that_were_looked_at_once() {
         ("drops", drops),
         ("dragon, light from the front", lit),
     ] {
-        let walks = WalkOptions { walks: 2048, from: Origin::Lights, ..WalkOptions::default() };
-        let settings = Settings {
-            rung: "reference".parse().expect("a rung"),
-            without: Effects::of(&[Effect::Environment]),
-            walks,
-            ..Settings::of_size(side, side)
-        };
-        let truth = render::render(super::gpu(), &scene, &settings).expect("walked").linear;
+        let truth = walked(&scene, 2048, side);
         for (rung, most, [best, one]) in shares(name, &scene, &truth, side) {
             // Goals are missed here by up to .11, which docs/diffusion.md says.
             assert!(best.max(one) < most + 0.13, "{name}, {rung}: {best} {one}");
@@ -97,25 +114,18 @@ fn forward_scattering_is_drawn_by_its_similar_matter() {
     let (side, g) = (32, 0.8);
     let even = Medium::isotropic(Vec3::new(0.8, 1.2, 2.0), Vec3::new(0.004, 0.02, 0.1));
     let forward = Medium { scattering: even.scattering / (1.0 - g), anisotropy: g, ..even.clone() };
-    let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
-    let scene_of = |medium: &Medium| scene_of(sphere(8.0, 96), medium.clone(), lights.clone(), (85.0, 10.0));
-    let [found, similar] = [&forward, &even].map(|medium| drawn(&scene_of(medium), "diffusion-64", 2 * side));
+    let [forward, even] = [forward, even].map(ball);
+    let [found, similar] = [&forward, &even].map(|scene| drawn(scene, "diffusion-64", 2 * side));
     let most = furthest(&found.linear, &similar.linear);
     let brightest = similar.linear.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
     assert!(most < 1e-4 * brightest, "{most} of {brightest}");
-    let [evenly, forwards] = [&even, &forward].map(|medium| {
-        let walks = WalkOptions { walks: 1024, from: Origin::Lights, ..WalkOptions::default() };
-        let without = Effects::of(&[Effect::Environment]);
-        let rung = "reference".parse().expect("a rung");
-        let settings = Settings { rung, without, walks, ..Settings::of_size(side, side) };
-        let truth = render::render(super::gpu(), &scene_of(medium), &settings).expect("walked").linear;
-        distance(&halved(&found).linear, &truth)
-    });
+    let [evenly, forwards] =
+        [&even, &forward].map(|scene| distance(&halved(&found).linear, &walked(scene, 1024, side)));
     println!("distance from walks that scatter evenly {evenly:.3}, forwards {forwards:.3}");
     assert!(evenly < 0.08 && (2.0..5.0).contains(&(forwards / evenly)), "{evenly} {forwards}");
 }
 
-/// A ball with a core of extinction 2 about its middle, in matter of another extinction, under a sun.
+/// A ball with a core of extinction 2 about its middle, in matter of another extinction.
 fn cored(shell: f32) -> Scene {
     let (core, radius, cells) = (2.0, 8.0, 64u32);
     let density = |index: u32| {
@@ -127,12 +137,10 @@ fn cored(shell: f32) -> Scene {
     let densities = (0..cells.pow(3)).map(density).collect();
     let [least, greatest] = [-radius, radius].map(Vec3::splat);
     let grid = DensityGrid::new(least, greatest, glam::UVec3::splat(cells), densities).expect("a grid");
-    let medium = Medium {
+    ball(Medium {
         density: Density::Grid(Arc::new(grid)),
         ..Medium::isotropic(Vec3::splat(core), Vec3::splat(0.002 * core))
-    };
-    let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
-    scene_of(sphere(radius.into(), 96), medium, lights, (85.0, 10.0))
+    })
 }
 
 /// Light that diffuses out of a dense core streams through thin matter around it. Diffusion lets it flow faster than light
@@ -140,17 +148,10 @@ fn cored(shell: f32) -> Scene {
 /// surface the flux is limited already.
 #[test]
 fn a_core_in_thin_matter_is_nearer_to_walks_with_the_flux_limiter() {
-    let side = 32;
     for (shell, most, [least_gain, most_gain]) in
         [(0.01, 0.36, [0.2, 0.45]), (0.05, 0.24, [0.02, 0.3]), (0.2, 0.1, [-0.05, 0.05])]
     {
-        let scene = cored(shell);
-        let walks = WalkOptions { walks: 2048, from: Origin::Lights, ..WalkOptions::default() };
-        let (rung, without) = ("reference".parse().expect("a rung"), Effects::of(&[Effect::Environment]));
-        let settings = Settings { rung, without, walks, ..Settings::of_size(side, side) };
-        let truth = render::render(super::gpu(), &scene, &settings).expect("walked").linear;
-        let [linear, limited] = ["diffusion-64", "diffusion-limited-64"]
-            .map(|rung| distance(&halved(&drawn(&scene, rung, 2 * side)).linear, &truth));
+        let [linear, limited] = without_and_with_limiter(&cored(shell), 2048);
         println!("extinction 2 in {shell}: distance {linear:.3}, with the limiter {limited:.3}");
         let gain = 1.0 - limited / linear;
         assert!(linear < most && (least_gain..most_gain).contains(&gain), "{shell}: {linear} {limited}");
@@ -160,17 +161,9 @@ fn a_core_in_thin_matter_is_nearer_to_walks_with_the_flux_limiter() {
 /// Thin matter shows single scattering alone: what a half space would add belongs to light that would have collided.
 #[test]
 fn thin_balls_are_as_bright_as_walks() {
-    let side = 32;
     for optical_radius in [0.05f32, 0.3, 1.0, 3.0] {
         let medium = Medium::isotropic(Vec3::splat(optical_radius / 8.0), Vec3::ZERO);
-        let lights = vec![sun(Vec3::new(-0.6, 0.4, 0.7), Vec3::splat(4.0))];
-        let scene = scene_of(sphere(8.0, 96), medium, lights, (85.0, 10.0));
-        let walks = WalkOptions { walks: 1024, from: Origin::Lights, ..WalkOptions::default() };
-        let (rung, without) = ("reference".parse().expect("a rung"), Effects::of(&[Effect::Environment]));
-        let settings = Settings { rung, without, walks, ..Settings::of_size(side, side) };
-        let truth = render::render(super::gpu(), &scene, &settings).expect("walked").linear;
-        let [linear, limited] = ["diffusion-64", "diffusion-limited-64"]
-            .map(|rung| distance(&halved(&drawn(&scene, rung, 2 * side)).linear, &truth));
+        let [linear, limited] = without_and_with_limiter(&ball(medium), 1024);
         println!("optical radius {optical_radius}: distance {linear:.3}, with the limiter {limited:.3}");
         // Of the thinnest the walks' own noise is most.
         let most = if optical_radius < 0.5 { 0.25 } else { 0.14 };
