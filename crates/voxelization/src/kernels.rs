@@ -1,4 +1,4 @@
-//! The kernels of the recipe `voxelization`, buffer by buffer, with its names and its order of
+//! The kernels of the recipe `voxelize`, buffer by buffer, with its names and its order of
 //! operations.
 
 use crate::VoxelizationGrid;
@@ -73,7 +73,7 @@ pub fn walk(grid: VoxelizationGrid, [a, b, c]: [Vec3; 3], effect_surface: bool, 
     }
 }
 
-/// Mirrors `voxelization_finish` for a row: each crossing flips all bits behind it. A row with an
+/// Mirrors `voxelize_finish` for a row: each crossing flips all bits behind it. A row with an
 /// odd number of crossings is not filled.
 pub fn finish(grid: VoxelizationGrid, row: u32, buffers: &mut Buffers) {
     let words = words(grid);

@@ -1,5 +1,5 @@
 //! Texture diffusion of one object: the recipe `texture_irradiance` draws the irradiance, and the
-//! recipe `texture_diffusion` blurs it.
+//! recipe `blur_texture` blurs it.
 
 use super::RenderError;
 use super::mesh_buffers;

@@ -11,7 +11,7 @@ use crate::frame::{
 use crate::record::Record;
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
-const RECIPE: &str = "reflective_shadow_map";
+const RECIPE: &str = "draw_light_map";
 /// Format of a texel: world position and N·L, for neither of which f16 is enough.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
@@ -45,8 +45,8 @@ impl Drawer {
         let source = PipelineSource {
             recipe: RECIPE,
             source: &lapidary_wgsl::recipe_source(RECIPE),
-            entries: ["reflective_shadow_map_vertex", "reflective_shadow_map_fragment"],
-            constants: &[("REFLECTIVE_SHADOW_MAP_CASTS_ONLY", f64::from(u8::from(casts_only)))],
+            entries: ["draw_light_map_vertex", "draw_light_map_fragment"],
+            constants: &[("DRAW_LIGHT_MAP_CASTS_ONLY", f64::from(u8::from(casts_only)))],
             formats: &[FORMAT],
             depth: Some(DEPTH_FORMAT),
         };

@@ -1,4 +1,4 @@
-//! The recipe `texture_diffusion`: its textures, and its passes from the drawn irradiance to the
+//! The recipe `blur_texture`: its textures, and its passes from the drawn irradiance to the
 //! texture that shading looks up.
 
 use super::RenderError;
@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion as mirror;
 
 /// Name of the recipe.
-const RECIPE: &str = "texture_diffusion";
+const RECIPE: &str = "blur_texture";
 /// Format of the irradiance: irradiance times coverage, with the coverage in alpha.
 pub const IRRADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of the world lengths of a texel along u and along v.
@@ -57,7 +57,7 @@ impl Taps {
     fn record(&self, direction: Vec2, low: Vec2, high: Vec2) -> Record {
         let mut taps = [Vec4::ZERO; MOST_PAIRS as usize];
         taps[..self.pairs.len()].copy_from_slice(&self.pairs);
-        let record = Record::new("TextureDiffusionBlur").with("direction", direction).with("sigma0", self.sigma0);
+        let record = Record::new("BlurTextureChart").with("direction", direction).with("sigma0", self.sigma0);
         let record =
             record.with("pairs", self.pairs.len() as u32).with("chart", Vec4::new(low.x, low.y, high.x, high.y));
         record.with("taps", &taps[..])
@@ -89,13 +89,13 @@ impl TextureDiffusion {
     pub fn new(builder: &mut Builder<'_>, size: [u32; 2], repeats: [bool; 2]) -> Result<Self, RenderError> {
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let mut pipeline = |entry| {
-            let entries = ["texture_diffusion_vertex", entry];
+            let entries = ["blur_texture_vertex", entry];
             let formats = &[IRRADIANCE_FORMAT];
             let source =
                 PipelineSource { recipe: RECIPE, source: &source, entries, constants: &[], formats, depth: None };
             builder.render_pipeline(&source)
         };
-        let [blur, dilate] = [pipeline("texture_diffusion_blur")?, pipeline("texture_diffusion_dilate")?];
+        let [blur, dilate] = [pipeline("blur_texture_along")?, pipeline("blur_texture_dilate")?];
         let address = |repeats| if repeats { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
         let sampler = builder.sampler("texture sampler", repeats.map(address));
         use wgpu::TextureUsages as Usage;

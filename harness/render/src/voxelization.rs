@@ -1,4 +1,4 @@
-//! The recipe `voxelization`: voxelizes a mesh on the device, anew in every frame.
+//! The recipe `voxelize`: voxelizes a mesh on the device, anew in every frame.
 
 use crate::frame::{BindGroupId, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
 use crate::record::Record;
@@ -10,7 +10,7 @@ use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
 /// Name of the recipe.
-const RECIPE: &str = "voxelization";
+const RECIPE: &str = "voxelize";
 /// Invocations of a workgroup.
 const WORKGROUP: u32 = 64;
 /// Workgroups that share the triangles over many columns.
@@ -81,10 +81,10 @@ impl Voxelizer {
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let mut kernel = |entry| builder.compute_pipeline(RECIPE, &source, entry, effects);
         let kernels = [
-            kernel("voxelization_vertices")?,
-            kernel("voxelization_triangles")?,
-            kernel("voxelization_large")?,
-            kernel("voxelization_finish")?,
+            kernel("voxelize_vertices")?,
+            kernel("voxelize_triangles")?,
+            kernel("voxelize_large")?,
+            kernel("voxelize_finish")?,
         ];
         let columns = u64::from(grid.cells) * u64::from(grid.cells);
         let bits = 4 * columns * u64::from(grid.words_per_row());

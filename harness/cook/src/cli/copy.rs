@@ -69,19 +69,20 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
     for name in names {
         let (name, part) = name.split_once("::").map_or((name.as_str(), None), |(name, part)| (name, Some(part)));
         let alone = names.len() == 1;
-        if let Some(recipe) = lapidary_wgsl::recipe(name) {
+        // No recipe has a module's name; `recipes_keep_the_contract` sees to it.
+        let Some(module) = cookbook::module(name) else {
+            let Some(recipe) = lapidary_wgsl::recipe(name) else {
+                let known: Vec<&str> = cookbook::modules()
+                    .iter()
+                    .map(|module| module.name)
+                    .chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name))
+                    .collect();
+                return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
+            };
             if !alone {
                 return Err(Failure(format!("`{name}` is a recipe, which holds its modules already; copy it alone")));
             }
             return Ok(Selection::Recipe(recipe, part.map(str::to_owned)));
-        }
-        let Some(module) = cookbook::module(name) else {
-            let known: Vec<&str> = cookbook::modules()
-                .iter()
-                .map(|module| module.name)
-                .chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name))
-                .collect();
-            return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
         };
         if let Some(function) = part {
             let Some(found) = module.function(function) else {

@@ -357,6 +357,7 @@ fn recipes_keep_the_contract() {
     let effects: Vec<String> =
         parts.chain(RECIPES.iter().map(|recipe| recipe.source)).flat_map(marks::effects).collect();
     for recipe in RECIPES {
+        assert!(lapidary_wgsl::module(recipe.name).is_none(), "`{}` names a module and a recipe", recipe.name);
         let lint = |text| lint_recipe(recipe.name, text, &effects);
         let findings: Vec<Finding> = recipe.own_text().into_iter().flat_map(lint).collect();
         assert!(findings.is_empty(), "{}", spell(&findings));

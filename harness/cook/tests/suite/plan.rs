@@ -280,8 +280,8 @@ fn cases() -> Vec<Case> {
                     "taps",
                     "diffused sampler",
                 ],
-                vec!["texture_irradiance", "texture_diffusion"],
-                vec!["texture_irradiance", "texture_diffusion"],
+                vec!["texture_irradiance", "blur_texture"],
+                vec!["texture_irradiance", "blur_texture"],
             ],
         ),
         // By itself it takes none of what the spread of light takes.
@@ -301,8 +301,8 @@ fn cases() -> Vec<Case> {
             tiled(),
             [
                 of_voxels,
-                vec!["voxelization", "optical_path_density", "optical_path_seed", "optical_path_tiles"],
-                vec!["voxelization", "densities", "seeds", "solve"],
+                vec!["voxelize", "optical_path_density", "optical_path_seed", "optical_path_tiles"],
+                vec!["voxelize", "densities", "seeds", "solve"],
             ],
         ),
         case(
@@ -311,8 +311,8 @@ fn cases() -> Vec<Case> {
             of_rung("diffusion-16"),
             [
                 of_cells,
-                vec!["voxelization", "optical_path_density", "diffusion_cells", "diffusion_source", "diffusion_solve"],
-                vec!["voxelization", "densities", "diffusion_cells", "diffusion_source", "diffusion_solve"],
+                vec!["voxelize", "optical_path_density", "diffusion_cells", "diffusion_source", "diffusion_solve"],
+                vec!["voxelize", "densities", "diffusion_cells", "diffusion_source", "diffusion_solve"],
             ],
         ),
         case(
@@ -345,8 +345,8 @@ fn cases() -> Vec<Case> {
                     "reflective shadow maps for shadows",
                     "depth of maps for shadows",
                 ],
-                vec!["reflective_shadow_map"],
-                vec!["reflective_shadow_map"],
+                vec!["draw_light_map"],
+                vec!["draw_light_map"],
             ],
         ),
         case(
@@ -636,7 +636,7 @@ fn ways_that_are_left_out_take_nothing_along() {
     let listing = planned(&dark, &of_rung("godunov-64"));
     let maps: Vec<&Resource> = listing.resources.iter().filter(|of| of.name.contains("maps")).collect();
     assert!(!maps.is_empty() && maps.iter().all(|map| map.bytes <= 16), "{maps:?}");
-    assert!(passes(&listing).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
+    assert!(passes(&listing).iter().all(|pass| !["voxelize", "seeds", "solve"].contains(pass)));
 }
 
 /// The proxy is drawn only on request. Quality chooses within a technique, and a named rung

@@ -502,8 +502,8 @@ fn how_long_a_frame_takes() {
         for cells in [16, 32, 64, 128, 256] {
             let all = time(&mesh, cells, &[]);
             let inside = time(&mesh, cells, &[("EFFECT_SURFACE", 0.0)]);
-            let shared = time(&mesh, cells, &[("VOXELIZATION_LARGE", 0.0)]);
-            let alone = time(&mesh, cells, &[("VOXELIZATION_LARGE", 1e9)]);
+            let shared = time(&mesh, cells, &[("VOXELIZE_LARGE", 0.0)]);
+            let alone = time(&mesh, cells, &[("VOXELIZE_LARGE", 1e9)]);
             println!(
                 "{name} {cells}: {all:.2?} ms, no surface {inside:.2?}, all shared {shared:.2?}, each alone {alone:.2?}"
             );

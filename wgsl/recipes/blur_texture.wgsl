@@ -1,4 +1,4 @@
-// texture_diffusion: the blur passes of texture-space diffusion, and the gutter round its charts.
+// blur_texture: the blur passes of texture-space diffusion, and the gutter round its charts.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
 //   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
@@ -12,18 +12,18 @@
 //      rgba16float target, with an alpha of 1;
 //    - texture_diffusion_stretch of dpdx and dpdy of the world position to an rg32float target.
 //    Triangles that cross the edge of a repeating texture must be drawn on both sides of it.
-// 2. `texture_diffusion_blur` along u, then along v, each time from one of two rgba16float
+// 2. `blur_texture_along` along u, then along v, each time from one of two rgba16float
 //    textures, both cleared to 0 beforehand, into the other. Run it once per chart, with the
 //    chart's own uniform and its rectangle as the scissor; the charts' rectangles must lie one
 //    texel or more apart.
-// 3. `texture_diffusion_dilate`, unless the charts fill the texture. The result is the irradiance:
+// 3. `blur_texture_dilate`, unless the charts fill the texture. The result is the irradiance:
 //    look it up with a linear sampler and multiply it by albedo / pi.
 
 // Number of texels filled around a chart: a bilinear lookup needs one, or two if slivers cover no
 // texel's centre.
-const TEXTURE_DIFFUSION_GUTTER: i32 = 2i;
+const BLUR_TEXTURE_GUTTER: i32 = 2i;
 
-struct TextureDiffusionBlur {
+struct BlurTextureChart {
     // (1, 0) along u, (0, 1) along v.
     direction: vec2f,
     // sigma0 of the widest channel, a length.
@@ -39,7 +39,7 @@ struct TextureDiffusionBlur {
 
 // Irradiance times the coverage in alpha.
 @group(0) @binding(0) var irradiance: texture_2d<f32>;
-@group(0) @binding(1) var<uniform> blur: TextureDiffusionBlur;
+@group(0) @binding(1) var<uniform> blur: BlurTextureChart;
 // Linear. It repeats along a direction in which the surface closes; otherwise it clamps to the
 // edge.
 @group(0) @binding(2) var linear_sampler: sampler;
@@ -48,14 +48,14 @@ struct TextureDiffusionBlur {
 
 // One triangle that covers the target.
 @vertex
-fn texture_diffusion_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+fn blur_texture_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
     return vec4f(4.0f * corner - 1.0f, 0.0f, 1.0f);
 }
 
 // Irradiance times coverage in RGB, coverage in alpha.
 @fragment
-fn texture_diffusion_blur(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn blur_texture_along(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(position.xy);
     let size = vec2f(textureDimensions(irradiance));
     let centre = textureLoad(irradiance, texel, 0);
@@ -84,15 +84,15 @@ fn texture_diffusion_blur(@builtin(position) position: vec4f) -> @location(0) ve
 
 // Irradiance, and 1 in alpha, on the charts and in their gutters; 0 elsewhere.
 @fragment
-fn texture_diffusion_dilate(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn blur_texture_dilate(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2i(position.xy);
     let size = vec2i(textureDimensions(irradiance));
     let centre = textureLoad(irradiance, texel, 0);
     var sum = centre.rgb;
     var coverage = centre.a;
     if centre.a == 0.0f {
-        for (var row = -TEXTURE_DIFFUSION_GUTTER; row <= TEXTURE_DIFFUSION_GUTTER; row++) {
-            for (var column = -TEXTURE_DIFFUSION_GUTTER; column <= TEXTURE_DIFFUSION_GUTTER; column++) {
+        for (var row = -BLUR_TEXTURE_GUTTER; row <= BLUR_TEXTURE_GUTTER; row++) {
+            for (var column = -BLUR_TEXTURE_GUTTER; column <= BLUR_TEXTURE_GUTTER; column++) {
                 let step = vec2i(column, row);
                 if all(texel + step >= vec2i(0i)) && all(texel + step < size) {
                     let neighbour = textureLoad(irradiance, texel + step, 0);

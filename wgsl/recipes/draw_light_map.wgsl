@@ -1,4 +1,4 @@
-// reflective_shadow_map: what one light sees of a scene: world position and N.L, for seeding paths of light and for shadows.
+// draw_light_map: what one light sees of a scene: world position and N.L, for seeding paths of light and for shadows.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005; Ozawa, Okamoto and Morishima,
 //   section 3.1.
@@ -10,7 +10,7 @@
 
 // Bodies keep light from others, and none enters them: their N.L counts as 0, and their normals are
 // neither read nor bound.
-override REFLECTIVE_SHADOW_MAP_CASTS_ONLY: bool = false;
+override DRAW_LIGHT_MAP_CASTS_ONLY: bool = false;
 
 @group(0) @binding(0) var<uniform> view: ReflectiveShadowMapView;
 // Three floats per vertex, in world space.
@@ -18,25 +18,25 @@ override REFLECTIVE_SHADOW_MAP_CASTS_ONLY: bool = false;
 @group(1) @binding(1) var<storage, read> indices: array<u32>;
 @group(1) @binding(2) var<storage, read> normals: array<f32>;
 
-struct ReflectiveShadowMapVertex {
+struct DrawLightMapVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
 }
 
 @vertex
-fn reflective_shadow_map_vertex(@builtin(vertex_index) vertex: u32) -> ReflectiveShadowMapVertex {
+fn draw_light_map_vertex(@builtin(vertex_index) vertex: u32) -> DrawLightMapVertex {
     let index = indices[vertex];
     let position = mesh_position(index);
     var normal = vec3f(0.0f);
-    if (!REFLECTIVE_SHADOW_MAP_CASTS_ONLY) {
+    if (!DRAW_LIGHT_MAP_CASTS_ONLY) {
         normal = mesh_normal(index);
     }
-    return ReflectiveShadowMapVertex(reflective_shadow_map_clip(view, position), position, normal);
+    return DrawLightMapVertex(reflective_shadow_map_clip(view, position), position, normal);
 }
 
 @fragment
-fn reflective_shadow_map_fragment(input: ReflectiveShadowMapVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn draw_light_map_fragment(input: DrawLightMapVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     var toward_light = -view.axis;
     if (view.lamp == 1u) {
         toward_light = normalize(view.origin - input.position);
@@ -44,7 +44,7 @@ fn reflective_shadow_map_fragment(input: ReflectiveShadowMapVertex, @builtin(fro
     // Light that falls on a surface from behind has come through a hole in the mesh: the surface
     // casts a shadow, but no light enters there.
     var cosine = 0.0f;
-    if (!REFLECTIVE_SHADOW_MAP_CASTS_ONLY) {
+    if (!DRAW_LIGHT_MAP_CASTS_ONLY) {
         cosine = select(0.0f, reflective_shadow_map_cosine(input.normal, toward_light), front);
     }
     return vec4f(input.position, cosine);

@@ -1,4 +1,4 @@
-// voxelization: a mesh that changes from frame to frame, as bits of a grid: solid inside, and nothing of its surface lost.
+// voxelize: a mesh that changes from frame to frame, as bits of a grid: solid inside, and nothing of its surface lost.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia
 //   2010.
@@ -6,13 +6,13 @@
 // parts: mesh
 //
 // In each frame the host sets `matter`, `surface`, `beyond`, `large` and `status` to 0, then runs:
-// 1. `voxelization_vertices`, a thread for each vertex, or fewer. It converts each vertex to grid
+// 1. `voxelize_vertices`, a thread for each vertex, or fewer. It converts each vertex to grid
 //    coordinates once, so that triangles that share a vertex get the same position to the last bit.
-// 2. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the
+// 2. `voxelize_triangles`, a thread for each triangle. Where a triangle crosses a column, the
 //    bit of the first voxel behind it flips; the voxels that it touches are set in `surface`.
 //    Triangles over many columns are put on a list.
-// 3. `voxelization_large`, any number of workgroups, which share the triangles of that list.
-// 4. `voxelization_finish`, a thread for each row along x. Each bit that is set flips all bits
+// 3. `voxelize_large`, any number of workgroups, which share the triangles of that list.
+// 4. `voxelize_finish`, a thread for each row along x. Each bit that is set flips all bits
 //    behind it. A row whose column was crossed an odd number of times belongs to an open mesh: it
 //    is counted and not filled, so that no streak runs through the grid.
 // A voxel is filled if its centre is inside or if the surface touches it.
@@ -26,15 +26,15 @@
 override EFFECT_SURFACE: bool = true;
 
 // The number of columns above which a triangle is shared among threads.
-override VOXELIZATION_LARGE: u32 = 64u;
-const VOXELIZATION_WORKGROUP: u32 = 64u;
+override VOXELIZE_LARGE: u32 = 64u;
+const VOXELIZE_WORKGROUP: u32 = 64u;
 
-struct VoxelizationList {
+struct VoxelizeList {
     count: atomic<u32>,
     triangles: array<u32>,
 }
 
-struct VoxelizationStatus {
+struct VoxelizeStatus {
     // Voxels whose centre is inside.
     solid: atomic<u32>,
     // Voxels that the surface touches.
@@ -52,14 +52,14 @@ struct VoxelizationStatus {
 // A bit for each column, set if the column is crossed an odd number of times behind its last
 // centre.
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
-@group(0) @binding(7) var<storage, read_write> status: VoxelizationStatus;
+@group(0) @binding(6) var<storage, read_write> large: VoxelizeList;
+@group(0) @binding(7) var<storage, read_write> status: VoxelizeStatus;
 // The vertices in grid coordinates, three numbers each, as many as in `positions`. No pass binds
 // more than six of the storage buffers.
 @group(0) @binding(8) var<storage, read_write> corners: array<f32>;
 
 // A triangle in grid coordinates, and the columns that it may touch.
-struct VoxelizationTriangle {
+struct VoxelizeTriangle {
     a: vec3f,
     b: vec3f,
     c: vec3f,
@@ -68,28 +68,28 @@ struct VoxelizationTriangle {
     size: vec2u,
 }
 
-fn voxelization_words() -> u32 {
+fn voxelize_words() -> u32 {
     return (grid.cells + 31u) / 32u;
 }
 
-fn voxelization_corner(vertex: u32) -> vec3f {
+fn voxelize_corner(vertex: u32) -> vec3f {
     return vec3f(corners[3u * vertex], corners[3u * vertex + 1u], corners[3u * vertex + 2u]);
 }
 
-fn voxelization_load(triangle: u32) -> VoxelizationTriangle {
-    let a = voxelization_corner(indices[3u * triangle]);
-    let b = voxelization_corner(indices[3u * triangle + 1u]);
-    let c = voxelization_corner(indices[3u * triangle + 2u]);
+fn voxelize_load(triangle: u32) -> VoxelizeTriangle {
+    let a = voxelize_corner(indices[3u * triangle]);
+    let b = voxelize_corner(indices[3u * triangle + 1u]);
+    let c = voxelize_corner(indices[3u * triangle + 2u]);
     let margin = voxelization_margin(a, b, c);
     let low = min(a, min(b, c)) - margin;
     let high = max(a, max(b, c)) + margin;
     let y = voxelization_range(low.y, high.y, grid.cells);
     let z = voxelization_range(low.z, high.z, grid.cells);
-    return VoxelizationTriangle(a, b, c, vec2u(y.x, z.x), vec2u(y.y - y.x, z.y - z.x));
+    return VoxelizeTriangle(a, b, c, vec2u(y.x, z.x), vec2u(y.y - y.x, z.y - z.x));
 }
 
 // Processes every `step`th of a triangle's columns, starting with the one numbered `first`.
-fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
+fn voxelize_walk(triangle: VoxelizeTriangle, first: u32, step: u32) {
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
@@ -100,7 +100,7 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
         if column.inside {
             let x = voxelization_first(column.depth, grid.cells);
             if x < grid.cells {
-                atomicXor(&matter[row * voxelization_words() + x / 32u], 1u << (x % 32u));
+                atomicXor(&matter[row * voxelize_words() + x / 32u], 1u << (x % 32u));
             } else {
                 atomicXor(&beyond[row / 32u], 1u << (row % 32u));
             }
@@ -114,7 +114,7 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
                     bits |= 1u << (x % 32u);
                 }
                 if bits != 0u && (x % 32u == 31u || x + 1u == range.y) {
-                    atomicOr(&surface[row * voxelization_words() + x / 32u], bits);
+                    atomicOr(&surface[row * voxelize_words() + x / 32u], bits);
                     bits = 0u;
                 }
             }
@@ -122,9 +122,9 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
     }
 }
 
-@compute @workgroup_size(VOXELIZATION_WORKGROUP)
-fn voxelization_vertices(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    for (var vertex = invocation.x; vertex < arrayLength(&positions) / 3u; vertex += groups.x * VOXELIZATION_WORKGROUP) {
+@compute @workgroup_size(VOXELIZE_WORKGROUP)
+fn voxelize_vertices(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var vertex = invocation.x; vertex < arrayLength(&positions) / 3u; vertex += groups.x * VOXELIZE_WORKGROUP) {
         let corner = voxelization_local(grid, mesh_position(vertex));
         corners[3u * vertex] = corner.x;
         corners[3u * vertex + 1u] = corner.y;
@@ -132,23 +132,23 @@ fn voxelization_vertices(@builtin(global_invocation_id) invocation: vec3u, @buil
     }
 }
 
-@compute @workgroup_size(VOXELIZATION_WORKGROUP)
-fn voxelization_triangles(@builtin(global_invocation_id) invocation: vec3u) {
+@compute @workgroup_size(VOXELIZE_WORKGROUP)
+fn voxelize_triangles(@builtin(global_invocation_id) invocation: vec3u) {
     if invocation.x >= arrayLength(&indices) / 3u {
         return;
     }
-    let triangle = voxelization_load(invocation.x);
-    if triangle.size.x * triangle.size.y > VOXELIZATION_LARGE {
+    let triangle = voxelize_load(invocation.x);
+    if triangle.size.x * triangle.size.y > VOXELIZE_LARGE {
         large.triangles[atomicAdd(&large.count, 1u)] = invocation.x;
     } else {
-        voxelization_walk(triangle, 0u, 1u);
+        voxelize_walk(triangle, 0u, 1u);
     }
 }
 
 // The workgroups are divided evenly among the triangles; if there are more triangles than
 // workgroups, each workgroup takes several in turn.
-@compute @workgroup_size(VOXELIZATION_WORKGROUP)
-fn voxelization_large(
+@compute @workgroup_size(VOXELIZE_WORKGROUP)
+fn voxelize_large(
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) lane: u32,
@@ -156,19 +156,19 @@ fn voxelization_large(
     let count = atomicLoad(&large.count);
     let together = max(groups.x / max(count, 1u), 1u);
     for (var place = group.x / together; place < count; place += groups.x / together) {
-        let triangle = voxelization_load(large.triangles[place]);
-        let first = (group.x % together) * VOXELIZATION_WORKGROUP + lane;
-        voxelization_walk(triangle, first, together * VOXELIZATION_WORKGROUP);
+        let triangle = voxelize_load(large.triangles[place]);
+        let first = (group.x % together) * VOXELIZE_WORKGROUP + lane;
+        voxelize_walk(triangle, first, together * VOXELIZE_WORKGROUP);
     }
 }
 
-@compute @workgroup_size(VOXELIZATION_WORKGROUP)
-fn voxelization_finish(@builtin(global_invocation_id) invocation: vec3u) {
+@compute @workgroup_size(VOXELIZE_WORKGROUP)
+fn voxelize_finish(@builtin(global_invocation_id) invocation: vec3u) {
     let row = invocation.x;
     if row >= grid.cells * grid.cells {
         return;
     }
-    let words = voxelization_words();
+    let words = voxelize_words();
     var crossings = (atomicLoad(&beyond[row / 32u]) >> (row % 32u)) & 1u;
     for (var word = 0u; word < words; word++) {
         crossings += countOneBits(atomicLoad(&matter[row * words + word]));
