@@ -1,4 +1,5 @@
-//! A browser's WebGPU from Rust: a second WGSL compiler (Tint), and drivers other than one's own.
+//! A browser's WebGPU from Rust: a second WGSL compiler (Tint), and drivers other than one's own; and its
+//! WebGL 2, for what is translated to GLSL ES.
 //!
 //! Chromium runs headless on a page served by this process. The page asks for jobs over a local
 //! socket, does them and returns the answers: it contains no shader, and this crate no technique.
@@ -94,12 +95,27 @@ pub struct Compute<'a> {
     pub workgroups: [u32; 3],
 }
 
+/// One draw of points by a vertex shader of WebGL 2, for what it computes: nothing is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Transform<'a> {
+    /// GLSL ES 3.00; compiled once for all draws with the same text and varyings. It reads its words from
+    /// the texture of unit 0, a `usampler2D` of 1,024 texels a row, one word each.
+    pub code: &'a str,
+    /// Names of the varyings that are returned, `uvec4` each.
+    pub varyings: &'a [String],
+    /// The words.
+    pub filled: &'a [u8],
+    /// Number of vertices.
+    pub vertices: u32,
+}
+
 /// A job for the page.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Job<'a> {
     Compile { texts: &'a [&'a str] },
     Compute { key: usize, code: &'a str, entry: &'a str, buffers: Vec<Size>, workgroups: [u32; 3] },
+    Transform { key: usize, code: &'a str, varyings: &'a [String], vertices: u32, size: usize },
     End,
 }
 
@@ -212,6 +228,25 @@ impl Browser {
             Ok(part.to_vec())
         })
         .collect()
+    }
+
+    /// Runs a vertex shader; returns its varyings, those of each vertex together.
+    ///
+    /// # Errors
+    /// Returns an error if the browser is gone, or if its WebGL refuses the shader.
+    pub fn transform(&self, transform: &Transform<'_>) -> Result<Vec<u8>, BrowserError> {
+        let Transform { code, varyings, filled, vertices } = *transform;
+        let mut guard = self.state();
+        let state = opened(&mut guard)?;
+        let next = state.keys.len();
+        let key = *state.keys.entry((code.to_owned(), varyings.join(" "))).or_insert(next);
+        let size = 16 * varyings.len() * vertices as usize;
+        let job = Job::Transform { key, code, varyings, vertices, size };
+        let (_, bytes) = state.connection.ask(&job, &[filled])?;
+        match bytes.len() == size {
+            true => Ok(bytes),
+            false => Err(BrowserError::Connection("its answer is too short".to_owned())),
+        }
     }
 
     /// Closes the browser. All later calls fail.

@@ -1,25 +1,25 @@
 //! `cook copy`.
 
 use super::{Failure, Outcome, output};
-use lapidary_assay::accuracy_line::Accuracy;
-use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
+use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_cook::cookbook::marks::{self, effect_of, effects, override_of};
-use lapidary_cook::cookbook::translate::{Target, translate};
 use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
 use lapidary_scene::nearest;
+use lapidary_translate::declarations::of_function;
+use lapidary_translate::{Language, library, shader, spirv};
 use lapidary_wgsl::Recipe;
 use std::path::PathBuf;
 
 /// Prints one self-contained file to paste: modules, or a recipe with everything that it requires.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv"
+    after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy fresnel --to glsl-es --out fresnel.glsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv"
 )]
 pub(super) struct Arguments {
-    /// Modules, or one recipe. SPIR-V and GLSL need entry points. For these, name one function as
-    /// MODULE::FUNCTION (it is wrapped in a compute kernel); for GLSL also one entry point of a
-    /// recipe, such as gem::gem_fragment.
+    /// Modules, or one recipe. MODULE::FUNCTION is one function with what it needs; in SPIR-V it is
+    /// wrapped in a compute kernel. RECIPE::ENTRY is one entry point, of which a recipe's GLSL holds
+    /// no more.
     #[arg(required = true, value_name = "MODULE|RECIPE")]
     names: Vec<String>,
     /// Effects of a recipe to keep, switched on; the others are cut out of the text, with the modules
@@ -32,6 +32,36 @@ pub(super) struct Arguments {
     /// Output file; stdout by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// Output language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Target {
+    /// The cookbook's own text.
+    Wgsl,
+    /// SPIR-V binary, little endian.
+    Spirv,
+    /// HLSL, shader model 5.1.
+    Hlsl,
+    /// Metal Shading Language 2.0.
+    Msl,
+    /// GLSL 4.50.
+    Glsl,
+    /// GLSL ES 3.00.
+    GlslEs,
+}
+
+impl Target {
+    /// Returns the language of a translated text; `None` for WGSL itself and for SPIR-V.
+    fn language(self) -> Option<Language> {
+        match self {
+            Self::Wgsl | Self::Spirv => None,
+            Self::Hlsl => Some(Language::Hlsl),
+            Self::Msl => Some(Language::Msl),
+            Self::Glsl => Some(Language::Glsl),
+            Self::GlslEs => Some(Language::GlslEs),
+        }
+    }
 }
 
 /// Meaning of the names on the command line.
@@ -48,10 +78,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let bytes = match &selection {
         Selection::Modules(modules) => of_modules(modules, arguments.to)?,
-        Selection::Function(module, function) => of_function(module, function, arguments.to)?,
+        Selection::Function(module, function) => of_one_function(module, function, arguments.to)?,
         Selection::Recipe(recipe, entry) => {
             let source = with_effects(recipe, arguments.effects.as_deref())?;
-            of_source(&source, recipe.name, arguments.to, entry.as_deref())?
+            of_recipe(&source, recipe.name, arguments.to, entry.as_deref())?
         }
     };
     match &arguments.out {
@@ -105,60 +135,65 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
 }
 
 fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
-    let names: Vec<&str> = modules.iter().map(|module| module.name).collect();
-    if to.needs_entry_point() {
-        let first = &modules[0].functions[0].name;
+    if to == Target::Spirv {
+        let (module, function) = (modules[0].name, &modules[0].functions[0].name);
         let message = format!(
-            "SPIR-V and GLSL hold entry points, so that a function is wrapped in one; name a function, such as {}::{first}",
-            names[0]
+            "SPIR-V holds entry points, so that a function is wrapped in one; name a function, such as {module}::{function}"
         );
         return Err(Failure(message));
     }
-    of_source(&lapidary_wgsl::compose(&names, ""), &names.join("+"), to, None)
+    let texts: Vec<String> = match to.language() {
+        None => modules.iter().map(|module| module.source.to_owned()).collect(),
+        Some(language) => {
+            modules.iter().map(|module| library(module.source, module.name, language)).collect::<Result<_, _>>()?
+        }
+    };
+    Ok(texts.join("\n").into_bytes())
 }
 
-fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
-    if to == Target::Wgsl {
-        // A function may call others of its module, and WGSL needs no entry point, so the whole
-        // module is copied.
-        let is_naive = module.function(function).is_some_and(|function| function.accuracy == Accuracy::Naive);
-        return Ok(if is_naive { module.whole } else { module.source }.as_bytes().to_vec());
+fn of_one_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
+    if to == Target::Spirv {
+        let kernel = KernelModule::reflect(module.whole, module.name, function)?;
+        let mut ir = kernel.module;
+        naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
+        let info = lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?;
+        return spirv(&ir, &info).map_err(Failure);
     }
-    let kernel = KernelModule::reflect(module.whole, module.name, function)?;
-    let mut ir = kernel.module;
-    naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
-    let info = lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?;
-    translate(&ir, &info, to, Some((ENTRY_POINT, naga::ShaderStage::Compute))).map_err(Failure)
+    // The module's own functions stand in `whole` as well, below the naive forms' own comment.
+    let text = of_function(module.whole, function).unwrap_or_else(|| module.whole.to_owned());
+    Ok(match to.language() {
+        None => text,
+        Some(language) => library(&text, module.name, language)?,
+    }
+    .into_bytes())
 }
 
-fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
+fn of_recipe(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
+    if let Some(language) = to.language() {
+        return Ok(shader(source, name, language, entry)?.into_bytes());
+    }
+    let (mut ir, info) = dispatch::parse(source, name)?;
+    if let Some(entry) = entry
+        && !ir.entry_points.iter().any(|point| point.name == entry)
+    {
+        let points: Vec<String> = ir.entry_points.iter().map(|point| format!("{name}::{}", point.name)).collect();
+        return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", "))));
+    }
     if to == Target::Wgsl {
         return Ok(source.as_bytes().to_vec());
     }
-    let (ir, info) = dispatch::parse(source, name)?;
-    let points: Vec<String> = ir.entry_points.iter().map(|point| format!("{name}::{}", point.name)).collect();
-    let entry = match entry {
-        None => None,
-        Some(entry) => match ir.entry_points.iter().find(|point| point.name == entry) {
-            Some(point) => Some((entry, point.stage)),
-            None => {
-                return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", "))));
-            }
-        },
-    };
-    if to == Target::Glsl && entry.is_none() {
-        return Err(Failure(format!("GLSL holds one entry point; name one of {}", points.join(", "))));
+    if let Some(entry) = entry {
+        ir.entry_points.retain(|point| point.name == entry);
     }
-    // The writers do not support overrides: each is replaced by its default here.
+    // SPIR-V's writer knows no overrides: each is replaced by its default here.
+    let info = match entry {
+        Some(_) => lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?,
+        None => info,
+    };
     let constants = naga::back::PipelineConstants::default();
-    let (ir, info) = naga::back::pipeline_constants::process_overrides(
-        &ir,
-        &info,
-        entry.map(|(name, stage)| (stage, name)),
-        &constants,
-    )
-    .map_err(|error| Failure(error.to_string()))?;
-    translate(&ir, &info, to, entry).map_err(Failure)
+    let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, None, &constants)
+        .map_err(|error| Failure(error.to_string()))?;
+    spirv(&ir, &info).map_err(Failure)
 }
 
 /// Returns the recipe to paste, without marks. If effects are named, the lines of all others are cut,

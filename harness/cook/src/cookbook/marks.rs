@@ -1,6 +1,7 @@
 //! Marks of the lines of a recipe that belong to an effect, or that replace it. The format is
 //! described in `docs/contract.md`.
 
+use lapidary_translate::declarations::{self, declarations, words};
 use lapidary_wgsl::Recipe;
 use std::collections::HashSet;
 
@@ -144,81 +145,17 @@ pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
     Ok(reached(&kept))
 }
 
-/// Lines of a text at the level of the module: a declaration with its comments and attributes, or
-/// anything else.
-#[derive(Default)]
-struct Piece<'a> {
-    lines: Vec<&'a str>,
-    /// Name of the declaration.
-    name: Option<&'a str>,
-    is_entry: bool,
-}
-
-/// Splits a text into pieces. As all WGSL here is formatted, a declaration begins at the start of a
-/// line, and ends with a line that begins with `}`, or, without a body, with `;`.
-fn pieces<'a>(lines: &[&'a str]) -> Vec<Piece<'a>> {
-    let mut pieces: Vec<Piece<'a>> = Vec::new();
-    let mut piece = Piece::default();
-    let mut is_open = false;
-    for &line in lines {
-        let code = line.split("//").next().unwrap_or_default().trim_end();
-        if line.trim().is_empty() && !is_open {
-            pieces.push(std::mem::take(&mut piece));
-            pieces.push(Piece { lines: vec![line], ..Piece::default() });
-            continue;
-        }
-        piece.lines.push(line);
-        piece.is_entry |= !is_open && ["@vertex", "@fragment", "@compute"].iter().any(|stage| code.starts_with(stage));
-        if !is_open && let Some(name) = declared(code) {
-            (piece.name, is_open) = (Some(name), true);
-        }
-        let has_body = piece.lines.iter().any(|line| ["fn ", "struct "].iter().any(|start| line.starts_with(start)));
-        if is_open && (if has_body { code.starts_with('}') } else { code.ends_with(';') }) {
-            is_open = false;
-            pieces.push(std::mem::take(&mut piece));
-        }
-    }
-    pieces.push(piece);
-    pieces
-}
-
-/// Returns the name that a line at the level of the module declares.
-fn declared(code: &str) -> Option<&str> {
-    // Attributes such as `@group(1) @binding(0)` stand before a variable.
-    let code = if code.starts_with('@') { &code[code.find(" var").map_or(code.len(), |at| at + 1)..] } else { code };
-    let keyword = code.split([' ', '<']).next()?;
-    let rest = match keyword {
-        "fn" | "struct" | "const" | "override" | "alias" => &code[keyword.len()..],
-        "var" if code.starts_with("var<") => code.split_once('>')?.1,
-        "var" => &code[keyword.len()..],
-        _ => return None,
-    };
-    words(rest).next()
-}
-
 /// Returns the lines without the declarations that no entry point reaches; all of them if there is
 /// no entry point.
 fn reached(lines: &[String]) -> String {
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-    let pieces = pieces(&lines);
-    let mut names: HashSet<&str> = HashSet::new();
-    let mut taken: Vec<bool> = pieces.iter().map(|piece| piece.is_entry).collect();
-    let has_entry = taken.contains(&true);
-    let mut left: Vec<usize> = (0..pieces.len()).filter(|at| taken[*at]).collect();
-    while let Some(at) = left.pop() {
-        let code = pieces[at].lines.iter().map(|line| line.split("//").next().unwrap_or_default());
-        names.extend(code.flat_map(words));
-        for (other, piece) in pieces.iter().enumerate() {
-            if !taken[other] && piece.name.is_some_and(|name| names.contains(name)) {
-                taken[other] = true;
-                left.push(other);
-            }
-        }
-    }
+    let declarations = declarations(&lines);
+    let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
+    let needed = declarations::reached(&declarations, |declaration| declaration.is_entry);
     let mut text = String::new();
-    for (piece, is_taken) in pieces.iter().zip(taken) {
-        if is_taken || piece.name.is_none() || !has_entry {
-            for line in &piece.lines {
+    for (declaration, is_needed) in declarations.iter().zip(needed) {
+        if is_needed || declaration.name.is_none() || !has_entry {
+            for line in &declaration.lines {
                 // One empty line is enough.
                 if !line.trim().is_empty() || !(text.is_empty() || text.ends_with("\n\n")) {
                     text.push_str(line);
@@ -240,7 +177,7 @@ pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
     let is_used = |text: &str| {
         let starts = ["fn ", "struct ", "const "];
         let mut declared = text.lines().filter_map(|line| starts.iter().find_map(|start| line.strip_prefix(start)));
-        declared.any(|rest| self::words(rest).next().is_some_and(|name| words.contains(name)))
+        declared.any(|rest| declarations::words(rest).next().is_some_and(|name| words.contains(name)))
     };
     let source = |name: &str| lapidary_wgsl::module(name).map_or("", |module| module.source);
     let naive = |name: &str| lapidary_wgsl::module(name).map_or("", |module| module.naive);
@@ -249,11 +186,6 @@ pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
     let required = recipe.requires().into_iter().filter(|name| is_used(source(name)) || compared.contains(name));
     let last: Vec<&str> = compared.iter().map(|name| naive(name)).chain([own.as_str()]).collect();
     Ok(lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n")))
-}
-
-/// Returns the identifiers and numbers of a line of code.
-fn words(code: &str) -> impl Iterator<Item = &str> {
-    code.split(|character: char| !character.is_ascii_alphanumeric() && character != '_').filter(|word| !word.is_empty())
 }
 
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an

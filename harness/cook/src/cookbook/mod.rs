@@ -1,12 +1,11 @@
-//! The cookbook as data: the promises in the modules' comments, the contract of modules and
-//! recipes, and their translation to other shading languages.
+//! The cookbook as data: the promises in the modules' comments, and the contract of modules and
+//! recipes.
 
 pub mod header;
 pub mod lint;
 pub mod marks;
 mod precedence;
 pub mod release;
-pub mod translate;
 
 use header::{FunctionDoc, Header};
 use std::sync::OnceLock;

@@ -196,6 +196,18 @@ fn a_copied_recipe_holds_its_modules() {
     }
 }
 
+/// A function comes with what it needs, and with nothing else.
+#[test]
+fn a_copied_function_holds_what_it_needs() {
+    let text = succeeds(folder().path(), &["copy", "refraction::refract"]).stdout;
+    assert!(text.starts_with("// refraction: ") && text.contains("struct RefractionHit"), "{text}");
+    assert!(text.contains("// Accuracy: ") && !text.contains("fn refraction_radicand("), "{text}");
+    dispatch::parse(&text, "refract.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    let naive = succeeds(folder().path(), &["copy", "refraction::refract_naive"]).stdout;
+    dispatch::parse(&naive, "naive.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    assert!(naive.contains("fn refraction_refract_naive("), "{naive}");
+}
+
 #[test]
 fn copies_are_written_in_other_languages() {
     let folder = folder();
@@ -203,7 +215,10 @@ fn copies_are_written_in_other_languages() {
         ("refraction", "hlsl", "refraction_refract"),
         ("refraction", "msl", "refraction_refract"),
         ("refraction::refract", "glsl", "refraction_refract"),
+        ("refraction::refract", "glsl-es", "refraction_refract"),
         ("refraction::refract", "wgsl", "refraction_refract"),
+        ("voxelization", "glsl", "voxelization_column"),
+        ("display::display_fragment", "glsl-es", "display_fragment"),
         ("gem", "hlsl", "refraction_refract"),
         ("gem", "msl", "refraction_refract"),
     ] {

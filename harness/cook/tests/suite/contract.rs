@@ -1,10 +1,9 @@
 //! The module contract: the cookbook keeps it, and each rule detects a module that breaks it.
 
 use lapidary_assay::accuracy_line::Accuracy;
+use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
-use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
-use lapidary_cook::cookbook::translate::{Target, translate};
 use lapidary_cook::cookbook::{marks, modules};
 use lapidary_cook::{check, formulas};
 use lapidary_wgsl::RECIPES;
@@ -75,34 +74,6 @@ fn every_recipe_compiles_with_the_modules_that_it_requires() {
         let uses_none = dispatch::parse(&own, recipe.name).is_ok();
         assert_eq!(uses_none, recipe.requires().is_empty(), "{} uses no module's function", recipe.name);
     }
-}
-
-#[test]
-fn every_function_can_be_written_in_every_language() {
-    let entry = Some((ENTRY_POINT, naga::ShaderStage::Compute));
-    for formula in formulas::all() {
-        let module = modules().iter().find(|module| module.name == formula.module).expect("a formula's module");
-        let kernel = KernelModule::reflect(module.whole, module.name, formula.function).expect("valid WGSL");
-        let info = lapidary_specialise::validate(&kernel.module).expect("valid IR");
-        for target in [Target::Wgsl, Target::Spirv, Target::Hlsl, Target::Msl, Target::Glsl] {
-            let bytes = translate(&kernel.module, &info, target, entry)
-                .unwrap_or_else(|error| panic!("{} in {target:?}: {error}", formula.function));
-            if target == Target::Spirv {
-                // SPIR-V's magic number, little endian.
-                assert_eq!(bytes[..4], [0x03, 0x02, 0x23, 0x07], "{}", formula.function);
-            } else {
-                let text = String::from_utf8(bytes).expect("text");
-                assert!(text.contains(formula.function), "{} in {target:?} is called otherwise", formula.function);
-            }
-        }
-    }
-}
-
-#[test]
-fn glsl_without_an_entry_point_is_refused() {
-    let module = &modules()[0];
-    let (ir, info) = dispatch::parse(module.source, module.name).expect("valid WGSL");
-    assert!(translate(&ir, &info, Target::Glsl, None).expect_err("no entry point").contains("entry point"));
 }
 
 /// A module that keeps the contract. Each test below breaks one thing.

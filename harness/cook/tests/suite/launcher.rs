@@ -41,7 +41,9 @@ impl Clone {
         let mut command = Command::new(self.at("cook"));
         let tools = format!("{}:/usr/local/bin:/usr/bin:/bin", self.at("tools").display());
         command.args(arguments).current_dir(self.folder.path()).env("PATH", tools).env("TMPDIR", self.at("temporary"));
-        for name in ["HOME", "XDG_RUNTIME_DIR", "XDG_DATA_HOME", "CARGO_TARGET_DIR", "LAPIDARY_CHROMIUM"] {
+        for name in
+            ["HOME", "XDG_RUNTIME_DIR", "XDG_DATA_HOME", "CARGO_TARGET_DIR", "LAPIDARY_CHROMIUM", "LAPIDARY_GLSLANG"]
+        {
             command.env_remove(name);
         }
         command

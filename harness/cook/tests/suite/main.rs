@@ -27,6 +27,7 @@ mod gem;
 mod hard_cases;
 mod instances;
 mod lamp_inside;
+mod languages;
 #[cfg(unix)]
 mod launcher;
 mod optical_path;

@@ -6,6 +6,7 @@
 //! `LAPIDARY_CHROMIUM=required`, as in `.ci/run`, they fail.
 
 mod functions;
+mod webgl;
 
 use crate::specialise::{specialised_program, specialised_texts};
 use lapidary_assay::dispatch;

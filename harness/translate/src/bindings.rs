@@ -1,0 +1,145 @@
+//! Where a language finds what a shader binds.
+
+use crate::{Language, Setting};
+use naga::back::{hlsl, msl};
+use naga::{AddressSpace, GlobalVariable, ImageClass, Module, StorageAccess, TypeInner};
+use std::collections::BTreeMap;
+
+/// A binding's place in a language.
+pub struct Place {
+    /// Group and binding in WGSL.
+    pub wgsl: (u32, u32),
+    /// Name in WGSL, the same in the language.
+    pub name: String,
+    /// Where the language finds it.
+    pub place: String,
+}
+
+/// What languages tell apart.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Uniform,
+    Storage { writes: bool },
+    Texture,
+    StorageTexture { writes: bool },
+    Sampler,
+}
+
+fn kind(module: &Module, variable: &GlobalVariable) -> Kind {
+    let writes = |access: StorageAccess| access.contains(StorageAccess::STORE);
+    match (variable.space, &module.types[variable.ty].inner) {
+        (AddressSpace::Uniform, _) => Kind::Uniform,
+        (AddressSpace::Storage { access }, _) => Kind::Storage { writes: writes(access) },
+        (_, TypeInner::Sampler { .. }) => Kind::Sampler,
+        (_, TypeInner::Image { class: ImageClass::Storage { access, .. }, .. }) => {
+            Kind::StorageTexture { writes: writes(*access) }
+        }
+        _ => Kind::Texture,
+    }
+}
+
+/// Gives every binding of a shader its place, writes the places into `setting`, and returns them in WGSL's
+/// order.
+pub fn assign(module: &Module, language: Language, setting: &mut Setting) -> Vec<Place> {
+    let mut bound: Vec<&GlobalVariable> =
+        module.global_variables.iter().map(|(_, variable)| variable).filter(|it| it.binding.is_some()).collect();
+    bound.sort_by_key(|variable| variable.binding.map(|at| (at.group, at.binding)));
+    // How many of a sort have a place.
+    let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut next = |sort: &'static str| {
+        let count = counts.entry(sort).or_default();
+        *count += 1;
+        *count - 1
+    };
+    let mut resources = msl::BindingMap::default();
+    let mut places = Vec::new();
+    for variable in bound {
+        let Some(at) = variable.binding else { continue };
+        let (kind, name) = (kind(module, variable), variable.name.clone().unwrap_or_default());
+        let place = match language {
+            Language::Hlsl => {
+                let space = u8::try_from(at.group).unwrap_or(u8::MAX);
+                let target = hlsl::BindTarget { space, register: at.binding, ..hlsl::BindTarget::default() };
+                setting.hlsl.binding_map.insert(at, target);
+                format!("register({}, space{space})", register(kind, at.binding))
+            }
+            Language::Msl => {
+                let sort = match kind {
+                    Kind::Uniform | Kind::Storage { .. } => "buffer",
+                    Kind::Texture | Kind::StorageTexture { .. } => "texture",
+                    Kind::Sampler => "sampler",
+                };
+                let slot = next(sort);
+                let own = u8::try_from(slot).unwrap_or(u8::MAX);
+                let mutable = matches!(kind, Kind::Storage { writes: true } | Kind::StorageTexture { writes: true });
+                let mut target = msl::BindTarget { mutable, ..msl::BindTarget::default() };
+                match sort {
+                    "buffer" => target.buffer = Some(own),
+                    "texture" => target.texture = Some(own),
+                    _ => target.sampler = Some(msl::BindSamplerTarget::Resource(own)),
+                }
+                resources.insert(at, target);
+                format!("[[{sort}({slot})]]")
+            }
+            Language::Glsl => match kind {
+                Kind::Sampler => "with its textures".to_owned(),
+                _ => {
+                    let sort = match kind {
+                        Kind::Uniform => "uniform block",
+                        Kind::Storage { .. } => "storage block",
+                        Kind::StorageTexture { .. } => "image",
+                        _ => "texture unit",
+                    };
+                    let slot = next(sort);
+                    setting.glsl.insert(at, u8::try_from(slot).unwrap_or(u8::MAX));
+                    format!("{sort}, binding = {slot}")
+                }
+            },
+            Language::GlslEs => match kind {
+                Kind::Sampler => "with its textures".to_owned(),
+                Kind::Uniform => format!("uniform block `{name}_block`"),
+                _ => "uniform of its name".to_owned(),
+            },
+        };
+        places.push(Place { wgsl: (at.group, at.binding), name, place });
+    }
+    if language == Language::Msl {
+        let sizes = needs_sizes(module).then(|| u8::try_from(next("buffer")).unwrap_or(u8::MAX));
+        for entry in &module.entry_points {
+            let own =
+                msl::EntryPointResources { resources: resources.clone(), sizes_buffer: sizes, ..Default::default() };
+            setting.msl.per_entry_point_map.insert(entry.name.clone(), own);
+        }
+        if let Some(slot) = sizes {
+            let place = format!("[[buffer({slot})]]: the sizes in bytes of {}", sized(module).join(", "));
+            places.push(Place { wgsl: (u32::MAX, u32::MAX), name: "_buffer_sizes".to_owned(), place });
+        }
+    }
+    places
+}
+
+/// Returns a register of HLSL.
+pub fn register_of(module: &Module, variable: &GlobalVariable) -> String {
+    register(kind(module, variable), variable.binding.map_or(0, |at| at.binding))
+}
+
+fn register(kind: Kind, number: u32) -> String {
+    let class = match kind {
+        Kind::Uniform => 'b',
+        Kind::Storage { writes: true } | Kind::StorageTexture { .. } => 'u',
+        Kind::Storage { writes: false } | Kind::Texture => 't',
+        Kind::Sampler => 's',
+    };
+    format!("{class}{number}")
+}
+
+/// Returns the names of the buffers whose length the host chooses, in the order of their declarations.
+fn sized(module: &Module) -> Vec<String> {
+    let is_sized = |variable: &GlobalVariable| module.types[variable.ty].inner.is_dynamically_sized(&module.types);
+    let variables = module.global_variables.iter().map(|(_, variable)| variable);
+    variables.filter(|variable| is_sized(variable)).filter_map(|variable| variable.name.clone()).collect()
+}
+
+fn needs_sizes(module: &Module) -> bool {
+    !sized(module).is_empty()
+}
