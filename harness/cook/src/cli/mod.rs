@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod copy;
 mod cost;
+mod dist;
 mod drawn;
 mod frame;
 mod gallery;
@@ -67,6 +68,7 @@ enum Command {
     List(list::Arguments),
     New(new::Arguments),
     Copy(copy::Arguments),
+    Dist(dist::Arguments),
     Cost(cost::Arguments),
     Plan(plan::Arguments),
     Frame(frame::Arguments),
@@ -107,6 +109,7 @@ pub(crate) fn run() -> ExitCode {
         Command::List(arguments) => list::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Copy(arguments) => copy::run(&arguments),
+        Command::Dist(arguments) => dist::run(&arguments),
         Command::Cost(arguments) => cost::run(&context, &arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Frame(arguments) => frame::run(&context, &arguments),

@@ -2,13 +2,13 @@
 //! with their promises, and complete WGSL to copy. It is a single page with its pictures in a
 //! folder, readable from disk without a network.
 
-mod folder;
 mod highlight;
 mod markdown;
 mod page;
 mod section;
 mod text;
 
+use crate::folder::{self, FolderError, Owner};
 use std::{
     collections::HashSet,
     fs, io,
@@ -65,41 +65,13 @@ pub enum GalleryError {
         /// Name of the unknown module.
         module: String,
     },
-    /// The folder contains something that does not belong to a gallery.
-    #[error(
-        "{} holds `{name}`, which `cook gallery` did not write and would have to delete; \
-        name another folder with --out, or move `{name}` away",
-        out.display()
-    )]
-    Foreign {
-        /// Path of the folder.
-        out: PathBuf,
-        /// The first such file, as a path relative to the folder.
-        name: String,
-    },
-    /// A file with that name exists.
-    #[error("{} is not a folder; name another one with --out", out.display())]
-    NotAFolder {
-        /// Path of the file.
-        out: PathBuf,
-    },
-    /// The folder cannot be read.
-    #[error("{} cannot be read: {source}; name another folder with --out", path.display())]
-    Read {
-        /// Path of the folder.
-        path: PathBuf,
-        /// The underlying file system error.
-        source: io::Error,
-    },
-    /// The folder cannot be written or replaced.
-    #[error("{} cannot be written: {source}; name another folder with --out, on a disk with room", path.display())]
-    Write {
-        /// Path of the folder or file.
-        path: PathBuf,
-        /// The underlying file system error.
-        source: io::Error,
-    },
+    /// The folder was not written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
 }
+
+/// Whose folder a gallery is.
+const OWNER: Owner = Owner { command: "cook gallery", marker: ".lapidary-gallery" };
 
 /// A picture and its file in the gallery, `images/NAME.png`.
 #[derive(Clone, Debug)]
@@ -122,9 +94,9 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
     let pictures = site.pictures.iter().map(|picture| (None, picture));
     let figures = site.figures.iter().map(|(module, figure)| (Some(module.as_str()), figure));
     let placed = place(pictures.chain(figures));
-    let folder = folder::replace(out, |folder| {
+    let folder = folder::replace(out, OWNER, |folder| -> Result<(), GalleryError> {
         let images = folder.join("images");
-        fs::create_dir(&images).map_err(|source| GalleryError::Write { path: images, source })?;
+        fs::create_dir(&images).map_err(|source| FolderError::Write { path: images, source })?;
         for Placed { picture, place, .. } in &placed {
             fs::copy(&picture.file, folder.join(place)).map_err(|source| GalleryError::Picture {
                 title: picture.title.clone(),
@@ -135,7 +107,7 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
         }
         let index = folder.join("index.html");
         let text = page::page(&site.adapter, &placed);
-        fs::write(&index, text).map_err(|source| GalleryError::Write { path: index, source })
+        Ok(fs::write(&index, text).map_err(|source| FolderError::Write { path: index, source })?)
     })?;
     Ok(folder.join("index.html"))
 }

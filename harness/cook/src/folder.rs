@@ -1,14 +1,60 @@
 //! Writes a folder that is either complete or absent: it is filled elsewhere and then replaces an
 //! older one, but only one that it wrote itself.
 
-use super::GalleryError;
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
-/// Name of the file that lists the files written by [`replace`], except itself, one path per line.
-pub const MARKER: &str = ".lapidary-gallery";
+/// Whose folder it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// The command that writes it, such as `cook gallery`.
+    pub command: &'static str,
+    /// Name of the file that lists the files written by [`replace`], except itself, one path per line.
+    pub marker: &'static str,
+}
+
+/// The reasons why a folder was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// The folder contains something that the command did not write.
+    #[error(
+        "{} holds `{name}`, which `{command}` did not write and would have to delete; \
+        name another folder with --out, or move `{name}` away",
+        out.display()
+    )]
+    Foreign {
+        /// Path of the folder.
+        out: PathBuf,
+        /// The first such file, as a path relative to the folder.
+        name: String,
+        /// The command.
+        command: &'static str,
+    },
+    /// A file with that name exists.
+    #[error("{} is not a folder; name another one with --out", out.display())]
+    NotAFolder {
+        /// Path of the file.
+        out: PathBuf,
+    },
+    /// The folder cannot be read.
+    #[error("{} cannot be read: {source}; name another folder with --out", path.display())]
+    Read {
+        /// Path of the folder.
+        path: PathBuf,
+        /// The underlying file system error.
+        source: io::Error,
+    },
+    /// The folder cannot be written or replaced.
+    #[error("{} cannot be written: {source}; name another folder with --out, on a disk with room", path.display())]
+    Write {
+        /// Path of the folder or file.
+        path: PathBuf,
+        /// The underlying file system error.
+        source: io::Error,
+    },
+}
 
 /// Files that file managers create in a folder when it is merely viewed.
 const LITTER: [&str; 3] = [".DS_Store", "Thumbs.db", "desktop.ini"];
@@ -17,27 +63,32 @@ const LITTER: [&str; 3] = [".DS_Store", "Thumbs.db", "desktop.ini"];
 /// empty or an earlier result. Returns the folder's absolute path.
 ///
 /// # Errors
-/// Returns the errors of `fill` and of the file system, and [`GalleryError::Foreign`] if `out`
-/// contains anything that an earlier call did not write. In each case `out` stays unchanged.
-pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>) -> Result<PathBuf, GalleryError> {
-    let failed = |source: io::Error| GalleryError::Write { path: out.to_owned(), source };
+/// Returns the errors of `fill` and of the file system, and [`FolderError::Foreign`] if `out`
+/// contains anything that an earlier call of the owner did not write. In each case `out` stays
+/// unchanged.
+pub fn replace<E: From<FolderError>>(
+    out: &Path,
+    owner: Owner,
+    fill: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<PathBuf, E> {
+    let failed = |source: io::Error| FolderError::Write { path: out.to_owned(), source };
     // An existing folder under its canonical name, so that a link to it stays a link.
     let out = match out.canonicalize() {
         Ok(existing) => existing,
         Err(_) => std::path::absolute(out).map_err(failed)?,
     };
-    refuse_foreign(&out)?;
+    refuse_foreign(&out, owner)?;
     let parent = out.parent().ok_or_else(|| failed(io::Error::other("it has no folder around it")))?;
     fs::create_dir_all(parent).map_err(failed)?;
 
-    let aside = tempfile::Builder::new().prefix(".lapidary-gallery-").tempdir_in(parent).map_err(failed)?;
+    let aside = tempfile::Builder::new().prefix(&format!("{}-", owner.marker)).tempdir_in(parent).map_err(failed)?;
     // A temporary folder is private to its owner; the folder inside it has the usual permissions.
     let (new, old) = (aside.path().join("new"), aside.path().join("old"));
     fs::create_dir(&new).map_err(failed)?;
     fill(&new)?;
     let mut names = files(&new).map_err(failed)?;
     names.sort();
-    fs::write(new.join(MARKER), names.join("\n") + "\n").map_err(failed)?;
+    fs::write(new.join(owner.marker), names.join("\n") + "\n").map_err(failed)?;
 
     let exists = fs::symlink_metadata(&out).is_ok();
     if exists {
@@ -45,25 +96,25 @@ pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>)
     }
     if let Err(source) = fs::rename(&new, &out) {
         if exists && fs::rename(&old, &out).is_err() {
-            // Keeps the older gallery, which would otherwise be deleted with the temporary folder.
+            // Keeps the older folder, which would otherwise be deleted with the temporary folder.
             let _kept = aside.keep();
         }
-        return Err(failed(source));
+        return Err(failed(source).into());
     }
     Ok(out)
 }
 
 /// Returns an error if `out` exists and is neither empty nor made up of files that [`replace`]
 /// wrote.
-fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
-    let failed = |source: io::Error| GalleryError::Read { path: out.to_owned(), source };
+fn refuse_foreign(out: &Path, owner: Owner) -> Result<(), FolderError> {
+    let failed = |source: io::Error| FolderError::Read { path: out.to_owned(), source };
     if fs::symlink_metadata(out).is_err() {
         return Ok(());
     }
     if !out.is_dir() {
-        return Err(GalleryError::NotAFolder { out: out.to_owned() });
+        return Err(FolderError::NotAFolder { out: out.to_owned() });
     }
-    let written = match fs::read_to_string(out.join(MARKER)) {
+    let written = match fs::read_to_string(out.join(owner.marker)) {
         Ok(list) => Some(list),
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         Err(error) => return Err(failed(error)),
@@ -77,10 +128,10 @@ fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
     let ours = |name: &String| {
         let last = name.rsplit('/').next().unwrap_or(name);
         let listed = written.as_deref().unwrap_or_default().lines().any(|line| line == name);
-        name == MARKER || LITTER.contains(&last) || listed
+        name == owner.marker || LITTER.contains(&last) || listed
     };
     match found.into_iter().find(|name| !ours(name)) {
-        Some(name) => Err(GalleryError::Foreign { out: out.to_owned(), name }),
+        Some(name) => Err(FolderError::Foreign { out: out.to_owned(), name, command: owner.command }),
         None => Ok(()),
     }
 }
@@ -114,7 +165,9 @@ fn files(folder: &Path) -> io::Result<Vec<String>> {
 mod tests {
     use super::*;
 
-    fn fill(text: &'static str) -> impl FnOnce(&Path) -> Result<(), GalleryError> {
+    const OWNER: Owner = Owner { command: "cook test", marker: ".lapidary-test" };
+
+    fn fill(text: &'static str) -> impl FnOnce(&Path) -> Result<(), FolderError> {
         move |folder| {
             fs::create_dir(folder.join("images")).expect("a new folder");
             fs::write(folder.join("images/a.png"), text).expect("a new file");
@@ -128,7 +181,7 @@ mod tests {
         let out = around.path().join("deep/out");
         fs::create_dir_all(&out).expect("a new folder");
         for text in ["first", "second"] {
-            let written = replace(&out, fill(text)).expect("nothing foreign");
+            let written = replace(&out, OWNER, fill(text)).expect("nothing foreign");
             assert_eq!(fs::read_to_string(written.join("images/a.png")).expect("written"), text);
             fs::write(out.join(".DS_Store"), "looked at").expect("writable");
         }
@@ -141,19 +194,19 @@ mod tests {
         let out = around.path().join("out");
         fs::create_dir(&out).expect("a new folder");
         fs::write(out.join("thesis.tex"), "years").expect("writable");
-        let error = replace(&out, fill("x")).expect_err("foreign");
+        let error = replace(&out, OWNER, fill("x")).expect_err("foreign");
         assert!(error.to_string().contains("thesis.tex"), "{error}");
         assert_eq!(fs::read_to_string(out.join("thesis.tex")).expect("kept"), "years");
-        assert!(matches!(replace(&out.join("thesis.tex"), fill("x")), Err(GalleryError::NotAFolder { .. })));
+        assert!(matches!(replace(&out.join("thesis.tex"), OWNER, fill("x")), Err(FolderError::NotAFolder { .. })));
     }
 
     #[test]
     fn a_file_that_was_added_to_a_result_is_refused_and_kept() {
         let around = tempfile::tempdir().expect("temporary folder");
         let out = around.path().join("out");
-        replace(&out, fill("x")).expect("nothing is there");
+        replace(&out, OWNER, fill("x")).expect("nothing is there");
         fs::write(out.join("images/mine.png"), "mine").expect("writable");
-        assert!(matches!(replace(&out, fill("y")), Err(GalleryError::Foreign { .. })));
+        assert!(matches!(replace(&out, OWNER, fill("y")), Err(FolderError::Foreign { .. })));
         assert_eq!(fs::read_to_string(out.join("images/mine.png")).expect("kept"), "mine");
         assert_eq!(fs::read_to_string(out.join("images/a.png")).expect("kept"), "x");
     }
@@ -164,12 +217,12 @@ mod tests {
         let out = around.path().join("out");
         let fail = |folder: &Path| {
             fs::write(folder.join("half"), "half").expect("writable");
-            Err(GalleryError::NotAFolder { out: folder.to_owned() })
+            Err(FolderError::NotAFolder { out: folder.to_owned() })
         };
-        assert!(replace(&out, fail).is_err());
+        assert!(replace(&out, OWNER, fail).is_err());
         assert_eq!(fs::read_dir(around.path()).expect("readable").count(), 0);
-        replace(&out, fill("x")).expect("nothing is there");
-        assert!(replace(&out, fail).is_err());
+        replace(&out, OWNER, fill("x")).expect("nothing is there");
+        assert!(replace(&out, OWNER, fail).is_err());
         assert_eq!(fs::read_to_string(out.join("images/a.png")).expect("kept"), "x");
     }
 }

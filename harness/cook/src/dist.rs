@@ -1,0 +1,162 @@
+//! `cook dist`: the modules and recipes in every language, as files to take along.
+
+use crate::cookbook::{marks, modules};
+use crate::folder::{self, FolderError, Owner};
+use lapidary_translate::{Language, TranslateError, library, shader, spirv};
+use lapidary_wgsl::RECIPES;
+use naga::ShaderStage;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// Whose folder it is.
+const OWNER: Owner = Owner { command: "cook dist", marker: ".lapidary-dist" };
+
+/// Why the folder was not written. Anything that existed at its path is unchanged.
+#[derive(Debug, thiserror::Error)]
+pub enum DistError {
+    /// The folder was not written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// A module cannot be translated.
+    #[error(transparent)]
+    Translate(#[from] TranslateError),
+    /// A recipe cannot be written.
+    #[error("recipe `{recipe}`: {message}")]
+    Recipe {
+        /// The recipe.
+        recipe: &'static str,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Path of the folder.
+    pub folder: PathBuf,
+    /// Number of files, besides the list of them.
+    pub files: usize,
+}
+
+/// Writes every module and every recipe in every language into the folder `out`, which is either
+/// complete or unchanged. The same cookbook gives the same bytes.
+///
+/// # Errors
+/// Returns an error if the file system fails, or if `out` contains anything that an earlier call did
+/// not write.
+pub fn write(out: &Path) -> Result<Written, DistError> {
+    let mut files = texts()?;
+    files.push(("README.md".to_owned(), readme(&files).into_bytes()));
+    for (name, text) in [
+        ("LICENSE-MIT-0", include_str!("../../../LICENSE-MIT-0")),
+        ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
+    ] {
+        files.push((name.to_owned(), text.as_bytes().to_vec()));
+    }
+    let folder = folder::replace(out, OWNER, |folder| -> Result<(), DistError> {
+        for (name, bytes) in &files {
+            let path = folder.join(name);
+            let failed = |source: io::Error| FolderError::Write { path: path.clone(), source };
+            if let Some(parent) = path.parent() {
+                fs::create_dir_all(parent).map_err(failed)?;
+            }
+            fs::write(&path, bytes).map_err(failed)?;
+        }
+        Ok(())
+    })?;
+    Ok(Written { folder, files: files.len() })
+}
+
+/// Name of a language's folder, as `cook copy --to` has it.
+#[must_use]
+pub const fn folder_of(language: Language) -> &'static str {
+    match language {
+        Language::Glsl => "glsl",
+        Language::GlslEs => "glsl-es",
+        Language::Hlsl => "hlsl",
+        Language::Msl => "msl",
+    }
+}
+
+/// Returns every text with its path.
+fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
+    let mut files = Vec::new();
+    for module in modules() {
+        files.push((format!("wgsl/{}.wgsl", module.name), module.source.as_bytes().to_vec()));
+        for language in Language::ALL {
+            let path = format!("{}/{}.{}", folder_of(language), module.name, language.extension());
+            files.push((path, library(module.source, module.name, language)?.into_bytes()));
+        }
+    }
+    for recipe in RECIPES {
+        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
+        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
+        files.push((format!("wgsl/recipes/{}.wgsl", recipe.name), source.as_bytes().to_vec()));
+        let (ir, info) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
+        for language in Language::ALL {
+            let folder = folder_of(language);
+            if !language.is_glsl() {
+                let path = format!("{folder}/recipes/{}.{}", recipe.name, language.extension());
+                files.push((path, shader(&source, recipe.name, language, None)?.into_bytes()));
+                continue;
+            }
+            for point in &ir.entry_points {
+                let stage = match point.stage {
+                    ShaderStage::Vertex => "vert",
+                    ShaderStage::Compute => "comp",
+                    _ => "frag",
+                };
+                match shader(&source, recipe.name, language, Some(&point.name)) {
+                    Ok(text) => {
+                        let path = format!("{folder}/recipes/{}.{}.{stage}", recipe.name, point.name);
+                        files.push((path, text.into_bytes()));
+                    }
+                    // The index says so.
+                    Err(TranslateError::Lacks { .. }) if language == Language::GlslEs => {}
+                    Err(error) => return Err(error.into()),
+                }
+            }
+        }
+        let constants = naga::back::PipelineConstants::default();
+        let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, None, &constants)
+            .map_err(|error| failed(error.to_string()))?;
+        files.push((format!("spirv/recipes/{}.spv", recipe.name), spirv(&ir, &info).map_err(failed)?));
+    }
+    Ok(files)
+}
+
+/// Returns the index of the files.
+fn readme(files: &[(String, Vec<u8>)]) -> String {
+    let mut text = "\
+# Lapidary, as text
+
+Every module and every recipe of the cookbook in each language, written by `cook dist`. A module is
+functions, structs and constants to paste or include, with its promises in its comments; texts of several
+modules stand in one file. A recipe is a whole shader; its first comment tells where its bindings are, and
+what was set. Clip space is WebGPU's everywhere: y up, depth from 0 to 1.
+
+- `wgsl`: the sources
+- `glsl`: GLSL 4.50; `glsl-es`: GLSL ES 3.00, of WebGL 2
+- `hlsl`: HLSL, shader model 5.1 and later
+- `msl`: the Metal Shading Language 2.0
+- `spirv`: recipes alone; sets and bindings are WGSL's groups and bindings
+
+"
+    .to_owned();
+    text.push_str("| module | what it computes |\n|---|---|\n");
+    for module in modules() {
+        text.push_str(&format!("| {} | {} |\n", module.name, module.header.purpose));
+    }
+    text.push_str("\n| recipe | entry points in GLSL ES 3.00 |\n|---|---|\n");
+    for recipe in RECIPES {
+        let start = format!("glsl-es/recipes/{}.", recipe.name);
+        let found = files.iter().filter_map(|(name, _)| name.strip_prefix(&start)?.rsplit_once('.'));
+        let found: Vec<&str> = found.map(|(entry, _)| entry).collect();
+        let found =
+            if found.is_empty() { "none: it needs storage buffers or compute".to_owned() } else { found.join(", ") };
+        text.push_str(&format!("| {} | {found} |\n", recipe.name));
+    }
+    text.push_str("\nLicence: MIT-0 or Apache-2.0, at your choice.\n");
+    text
+}
