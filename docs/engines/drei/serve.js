@@ -13,6 +13,8 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.json': 'applic
 
 /** The file that a path of the page stands for; null outside the folders that are served. */
 function file(out, path) {
+  // What runs a frame is no page's own.
+  if (path === '/frame.js') return join(HERE, '../frame.js');
   const [page, roots] = [join(HERE, 'page'), { modules: join(HERE, 'node_modules'), out }];
   const [, first, ...rest] = decodeURIComponent(path).split('/');
   const [root, under] = Object.hasOwn(roots, first) ? [roots[first], rest] : [page, [first || 'index.html']];

@@ -131,3 +131,15 @@ fn a_frame_is_whole() {
     let refused = Executor::new(gpu(), seen).expect_err("left out").to_string();
     assert!(refused.contains("its contents were left out: the frame was made without a device"), "{refused}");
 }
+
+/// What runs frames in a browser reads the version that is written.
+#[test]
+fn the_browsers_reader_is_of_this_version() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = frame(None, &Scene::named("brilliant").expect("built in"), &Settings::of_size(16, 16)).expect("a frame");
+    made.write(&folder.path().join("frame")).expect("written");
+    let text = std::fs::read_to_string(folder.path().join("frame/frame.json")).expect("frame.json");
+    let written: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let reader = include_str!("../../../../docs/engines/frame.js");
+    assert!(reader.contains(&format!("const VERSION = {};", written["version"])), "{}", written["version"]);
+}

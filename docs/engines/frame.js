@@ -8,7 +8,20 @@
 //
 //   frame.draw((pass) => pass.kind !== 'read');
 
-const TEXEL_BYTES = { rgba8unorm: 4, r32float: 4, depth32float: 4, rg32float: 8, rgba16float: 8, rgba32float: 16 };
+/** The version of frame.json that this file reads. */
+const VERSION = 4;
+
+const TEXEL_BYTES = {
+  r8unorm: 1,
+  rgba8unorm: 4,
+  'rgba8unorm-srgb': 4,
+  rg16float: 4,
+  r32float: 4,
+  depth32float: 4,
+  rg32float: 8,
+  rgba16float: 8,
+  rgba32float: 16,
+};
 
 /** Or-s the flags of WebGPU's names. */
 const flags = (names, all) => names.reduce((sum, name) => sum | all[name], 0);
@@ -27,7 +40,7 @@ export class Frame {
     const frame = new Frame();
     frame.device = device;
     frame.rows = await fetched(folder, 'frame.json', 'json');
-    if (frame.rows.version !== 3) throw new Error(`a frame of version ${frame.rows.version}, not 3`);
+    if (frame.rows.version !== VERSION) throw new Error(`a frame of version ${frame.rows.version}, not ${VERSION}`);
     const { resources, pipelines, bind_groups } = frame.rows;
     const bytes = (file) => (file === null ? null : fetched(folder, file, 'arrayBuffer'));
     frame.contents = await Promise.all(resources.map((row) => bytes(row.contents ?? null)));
@@ -95,7 +108,8 @@ export class Frame {
     const { device } = this;
     if (row.kind === 'sampler') {
       const [addressModeU, addressModeV] = row.address;
-      return device.createSampler({ magFilter: row.filter, minFilter: row.filter, addressModeU, addressModeV });
+      const filters = { magFilter: row.filter, minFilter: row.filter, mipmapFilter: row.filter };
+      return device.createSampler({ ...filters, addressModeU, addressModeV });
     }
     if (row.kind === 'buffer') {
       const usage = flags(row.usage, GPUBufferUsage);
@@ -105,11 +119,14 @@ export class Frame {
       buffer.unmap();
       return buffer;
     }
-    const { size, format, dimension } = row;
-    const texture = device.createTexture({ size, format, dimension, usage: flags(row.usage, GPUTextureUsage) });
-    if (contents !== null) {
-      const layout = { bytesPerRow: size[0] * TEXEL_BYTES[format], rowsPerImage: size[1] };
-      device.queue.writeTexture({ texture }, contents, layout, size);
+    const { size, format, dimension, levels } = row;
+    const usage = flags(row.usage, GPUTextureUsage);
+    const texture = device.createTexture({ size, format, dimension, usage, mipLevelCount: levels });
+    for (let mipLevel = 0, offset = 0; contents !== null && offset < contents.byteLength; mipLevel++) {
+      const [width, height] = size.map((texels) => Math.max(1, texels >> mipLevel));
+      const layout = { offset, bytesPerRow: width * TEXEL_BYTES[format], rowsPerImage: height };
+      device.queue.writeTexture({ texture, mipLevel }, contents, layout, [width, height, size[2]]);
+      offset += layout.bytesPerRow * height * size[2];
     }
     return texture;
   }
@@ -162,7 +179,7 @@ export class Frame {
   }
 
   #layer(place, baseArrayLayer) {
-    return this.resources[place].createView({ dimension: '2d', baseArrayLayer, arrayLayerCount: 1 });
+    return this.resources[place].createView({ dimension: '2d', baseArrayLayer, arrayLayerCount: 1, mipLevelCount: 1 });
   }
 
   #bind(encoder, draw) {
