@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 }
 
 /// Tests that a quick run skips: those whose names contain one of these.
-const SLOW: [&str; 36] = [
+const SLOW: [&str; 37] = [
     "allowance::",
     "antialiasing::",
     "atlas::",
@@ -50,6 +50,7 @@ const SLOW: [&str; 36] = [
     "formulas::every",
     "furnace::",
     "gem::",
+    "languages::",
     "optical_path::",
     "optical_path_shading::",
     "parity::",

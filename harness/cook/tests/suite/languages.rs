@@ -7,7 +7,7 @@
 
 use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_cook::cookbook::{Module, modules};
-use lapidary_cook::formulas;
+use lapidary_cook::{dist, formulas};
 use lapidary_translate::declarations::{declarations, of_function, words};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
 use lapidary_wgsl::RECIPES;
@@ -145,6 +145,8 @@ fn texts_of_all_modules_stand_in_one_file() {
     }
     let folder = folder();
     for language in COMPILED {
+        // What is wrong is seen.
+        assert!(compiled("float wrong( {", language, As::Library, folder.path(), "wrong").is_err(), "{language}");
         let forwards: Vec<String> = modules().iter().map(|module| of_module(module, language)).collect();
         let backwards: Vec<String> = forwards.iter().rev().cloned().collect();
         for (order, texts) in [("forwards", forwards), ("backwards", backwards)] {
@@ -276,4 +278,35 @@ fn a_recipe_tells_where_its_bindings_are() {
         // No vertex is flipped, and no depth stretched.
         assert!(!text.contains("gl_Position.yz ="), "{}", shown.place);
     }
+}
+
+#[test]
+fn dist_writes_every_text_and_the_same_again() {
+    let folder = folder();
+    let out = folder.path().join("dist");
+    let read = |name: &str| std::fs::read(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let written = dist::write(&out).expect("written");
+    for module in modules() {
+        assert_eq!(read(&format!("wgsl/{}.wgsl", module.name)), module.source.as_bytes());
+        for language in Language::ALL {
+            let name = format!("{}/{}.{}", dist::folder_of(language), module.name, language.extension());
+            assert_eq!(read(&name), of_module(module, language).as_bytes(), "{name}");
+        }
+    }
+    for recipe in RECIPES {
+        for name in ["wgsl/recipes/{}.wgsl", "hlsl/recipes/{}.hlsl", "msl/recipes/{}.metal", "spirv/recipes/{}.spv"] {
+            assert!(!read(&name.replace("{}", recipe.name)).is_empty());
+        }
+    }
+    let index = String::from_utf8(read("README.md")).expect("text");
+    assert!(
+        index.contains("| display | display_fragment, display_vertex |") && index.contains("| refraction |"),
+        "{index}"
+    );
+    let hlsl = read("hlsl/recipes/gem.hlsl");
+    assert_eq!(dist::write(&out).expect("written again"), written);
+    assert_eq!(read("hlsl/recipes/gem.hlsl"), hlsl);
+    std::fs::write(out.join("mine.txt"), "mine").expect("a file");
+    let error = dist::write(&out).expect_err("a foreign file").to_string();
+    assert!(error.contains("mine.txt") && error.contains("cook dist"), "{error}");
 }
