@@ -146,7 +146,7 @@ what was set. Clip space is WebGPU's everywhere: y up, depth from 0 to 1.
     .to_owned();
     text.push_str("| module | what it computes |\n|---|---|\n");
     for module in modules() {
-        text.push_str(&format!("| {} | {} |\n", module.name, module.header.purpose));
+        text.push_str(&format!("| {} | {} |\n", module.name, module.header.purpose.trim_end_matches('.')));
     }
     text.push_str("\n| recipe | entry points in GLSL ES 3.00 |\n|---|---|\n");
     for recipe in RECIPES {

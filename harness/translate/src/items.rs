@@ -80,8 +80,9 @@ fn item(text: String) -> Item {
         (Kind::Variable, rest.split(|c: char| !is_word(c)).next().unwrap_or_default().to_owned())
     } else if ["layout", "uniform ", "buffer "].iter().any(|start| code.starts_with(start)) {
         // A block's only member, or the texture.
-        let words = code.split(|c: char| !is_word(c)).filter(|word| word.starts_with(|c: char| !c.is_ascii_digit()));
-        (Kind::Variable, words.last().unwrap_or_default().to_owned())
+        let mut words =
+            code.split(|c: char| !is_word(c)).filter(|word| word.starts_with(|c: char| !c.is_ascii_digit()));
+        (Kind::Variable, words.next_back().unwrap_or_default().to_owned())
     } else if is_called {
         (Kind::Function, before(&['(']))
     } else {
@@ -130,12 +131,8 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
         };
         let (token, left) = rest.split_at(length);
         let is_name = is_word(first) && !first.is_ascii_digit();
-        let follows = tokens.iter().rev().map(|token| token.text()).take(2).collect::<Vec<_>>();
-        let is_part = match follows.as_slice() {
-            [".", ..] => true,
-            [":", ":"] => true,
-            _ => false,
-        };
+        let before: Vec<&str> = tokens.iter().rev().map(|token| token.text()).take(2).collect();
+        let is_part = matches!(before.as_slice(), [".", ..] | [":", ":"]);
         tokens.push(if is_name && !is_part { Token::Name(token) } else { Token::Other(token) });
         rest = left;
     }
