@@ -13,9 +13,17 @@ fn main() -> std::io::Result<()> {
             true => (include(&naive), format!("concat!({}, \"\\n\", {})", include(&own), include(&naive))),
             false => ("\"\"".to_owned(), include(&own)),
         };
-        let page = include(&root.join(format!("../docs/{name}.md")));
-        format!(", naive: {naive}, whole: {whole}, page: {page}")
+        format!(", naive: {naive}, whole: {whole}")
     };
+    for file in files(&root, "wgsl")? {
+        let name = stem(&file);
+        let _ = writeln!(
+            text,
+            "/// WGSL of the module `{name}`.\npub const {}: &str = {};",
+            name.to_uppercase(),
+            include(&file)
+        );
+    }
     list(&mut text, "Every module", "MODULES", "Module", &files(&root, "wgsl")?, more);
     list(&mut text, "Every recipe", "RECIPES", "Recipe", &files(&root.join("recipes"), "wgsl")?, |_| String::new());
     list(&mut text, "Every part", "PARTS", "Part", &files(&root.join("recipes/parts"), "wgsl")?, |_| String::new());

@@ -1,8 +1,11 @@
 //! The cookbook's WGSL and its composition, for the harness and for Rust engines.
-//! [`Recipe::compose`] returns the whole shader of a recipe, such as `recipe("gem")`. A module's
-//! `source` is pasted as it is.
+//! Each module is a constant, such as [`REFRACTION`], to be pasted as it is; [`compose`] puts several
+//! before a shader of one's own. [`Recipe::compose`] returns the whole shader of a recipe, such as
+//! `recipe("gem")`.
 //!
 //! ```
+//! let own = lapidary_wgsl::compose(&["refraction", "fresnel"], "@fragment fn main() {}");
+//! assert!(own.starts_with(lapidary_wgsl::REFRACTION));
 //! let shader = lapidary_wgsl::recipe("gem").expect("a recipe").compose();
 //! assert!(shader.contains("fn gem_fragment"));
 //! let module = lapidary_wgsl::module("refraction").expect("a module");
@@ -10,9 +13,6 @@
 //! ```
 
 include!(concat!(env!("OUT_DIR"), "/folder.rs"));
-
-/// Changes from release to release, by function.
-pub const CHANGELOG: &str = include_str!("../../CHANGELOG.md");
 
 /// A technique: pure functions, without bindings and entry points.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +25,6 @@ pub struct Module {
     pub naive: &'static str,
     /// `source` and `naive`.
     pub whole: &'static str,
-    /// Documentation page in Markdown.
-    pub page: &'static str,
 }
 
 /// A complete shader, written with the functions of the modules that its `// requires:` line names,

@@ -1,4 +1,4 @@
-//! `wgsl/bounds_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-bounds_trace`.
+//! `wgsl/bounds_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-bounds-trace`.
 
 use lapidary_bounds_trace::formulas::formulas;
 

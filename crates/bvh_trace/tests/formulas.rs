@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/bvh_trace.wgsl` and its naive forms:
-//! `cargo test -p lapidary-bvh_trace`.
+//! `cargo test -p lapidary-bvh-trace`.
 
 use lapidary_bvh_trace::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/closest_point.wgsl` and its naive forms:
-//! `cargo test -p lapidary-closest_point`.
+//! `cargo test -p lapidary-closest-point`.
 
 use lapidary_closest_point::formulas::formulas;
 

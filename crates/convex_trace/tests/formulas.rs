@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/convex_trace.wgsl` and its naive forms:
-//! `cargo test -p lapidary-convex_trace`.
+//! `cargo test -p lapidary-convex-trace`.
 
 use lapidary_convex_trace::formulas::formulas;
 

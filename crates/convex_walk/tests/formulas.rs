@@ -1,4 +1,4 @@
-//! `wgsl/convex_walk.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-convex_walk`.
+//! `wgsl/convex_walk.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-convex-walk`.
 
 use lapidary_convex_walk::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/half_space.wgsl` and its naive forms:
-//! `cargo test -p lapidary-half_space`.
+//! `cargo test -p lapidary-half-space`.
 
 use lapidary_half_space::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/optical_path.wgsl` and its naive forms:
-//! `cargo test -p lapidary-optical_path`.
+//! `cargo test -p lapidary-optical-path`.
 
 use lapidary_optical_path::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/proxy_geometry.wgsl` and its naive forms:
-//! `cargo test -p lapidary-proxy_geometry`.
+//! `cargo test -p lapidary-proxy-geometry`.
 
 use lapidary_proxy_geometry::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Device tests of every function of `wgsl/random_walk.wgsl` and its naive forms:
-//! `cargo test -p lapidary-random_walk`.
+//! `cargo test -p lapidary-random-walk`.
 
 use lapidary_random_walk::formulas::formulas;
 

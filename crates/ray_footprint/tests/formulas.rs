@@ -1,4 +1,4 @@
-//! `wgsl/ray_footprint.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-ray_footprint`.
+//! `wgsl/ray_footprint.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-ray-footprint`.
 
 use lapidary_ray_footprint::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Tests `wgsl/reflective_shadow_map.wgsl` and its naive forms, function by function, on the
-//! device: `cargo test -p lapidary-reflective_shadow_map`.
+//! device: `cargo test -p lapidary-reflective-shadow-map`.
 
 use lapidary_reflective_shadow_map::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/screen_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-screen_trace`.
+//! `wgsl/screen_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-screen-trace`.
 
 use lapidary_screen_trace::formulas::formulas;
 

@@ -1,5 +1,5 @@
 //! Tests `wgsl/texture_diffusion.wgsl` and its naive forms, function by function, on the device:
-//! `cargo test -p lapidary-texture_diffusion`.
+//! `cargo test -p lapidary-texture-diffusion`.
 
 use lapidary_texture_diffusion::formulas::formulas;
 

@@ -6,6 +6,10 @@
 //! and tells in its first comment where each binding is found. naga's writers do the translation
 //! itself.
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod bindings;
 pub mod declarations;
 mod hlsl;

@@ -30,7 +30,7 @@ const FILES: [(&str, &str); 8] = [
 
 /// Manifests that need a line for cargo, and that line; the lines are sorted by name.
 const MANIFESTS: [(&str, &str); 2] = [
-    ("Cargo.toml", "lapidary-NAME = { path = \"crates/NAME\" }"),
+    ("Cargo.toml", "lapidary-NAME = { path = \"crates/NAME\", version = \"0.2.0\" }"),
     ("harness/cook/Cargo.toml", "lapidary-NAME = { workspace = true, features = [\"formulas\"] }"),
 ];
 
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let path = path.strip_prefix(&root).unwrap_or(path).display();
         output::line(&format!("{} {path}", if *is_new { "new    " } else { "changed" }))?;
     }
-    output::line(&format!("next: cargo test -p lapidary-{name}; then CONTRIBUTING.md, from \"The WGSL\" on"))?;
+    output::line(&format!("next: cargo test -p {}; then CONTRIBUTING.md, from \"The WGSL\" on", package(name)))?;
     Ok(Outcome::Passed)
 }
 
@@ -83,7 +83,7 @@ fn check_name(name: &str) -> Result<(), String> {
 
 /// Returns all changes to be written, without writing anything.
 fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
-    let named = |text: &str| text.replace("NAME", name);
+    let named = |text: &str| text.replace("lapidary-NAME", &package(name)).replace("NAME", name);
     let mut changes = Vec::new();
     for (path, text) in FILES {
         let path = root.join(named(path));
@@ -95,7 +95,7 @@ fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
     for (path, line) in MANIFESTS {
         let path = root.join(path);
         let manifest = read(&path)?;
-        let package = format!("lapidary-{name}");
+        let package = package(name);
         if name == "cook" || manifest.lines().any(|line| line.split([' ', '.']).next() == Some(package.as_str())) {
             return Err(format!("`{name}`: there is a crate `{package}` already; choose another name"));
         }
@@ -112,6 +112,11 @@ fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
     let text = format!("{before}{heading}- `{name}`: a new module.\n{after}");
     changes.push(Change { path, text, is_new: false });
     Ok(changes)
+}
+
+/// Returns the name of a module's package.
+fn package(name: &str) -> String {
+    format!("lapidary-{}", name.replace('_', "-"))
 }
 
 fn read(path: &Path) -> Result<String, String> {

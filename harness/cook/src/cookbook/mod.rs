@@ -10,6 +10,8 @@ pub mod release;
 use header::{FunctionDoc, Header};
 use std::sync::OnceLock;
 
+include!(concat!(env!("OUT_DIR"), "/pages.rs"));
+
 /// WGSL module of one technique.
 #[derive(Clone, Debug)]
 pub struct Module {
@@ -55,7 +57,7 @@ pub fn modules() -> &'static [Module] {
                 source: module.source,
                 naive: module.naive,
                 whole: module.whole,
-                page: module.page,
+                page: page(module.name),
                 header: header::parse_header(module.source).unwrap_or_else(|e| fault(module.name, e)),
                 functions: header::parse_functions(module.whole).unwrap_or_else(|e| fault(module.name, e)),
             })

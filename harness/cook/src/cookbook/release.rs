@@ -11,6 +11,8 @@ use std::sync::OnceLock;
 
 /// Number of the current or upcoming release.
 pub const CURRENT: &str = env!("CARGO_PKG_VERSION");
+/// Changes from release to release, by function.
+const CHANGELOG: &str = include_str!("../../../../CHANGELOG.md");
 /// Prefix of the header line that holds release and hash.
 const TAG: &str = "// Version: ";
 
@@ -140,7 +142,7 @@ impl History {
             let read =
                 |text: &&str| serde_json::from_str(text).unwrap_or_else(|error| panic!("wgsl/releases: {error}"));
             let releases = lapidary_wgsl::RELEASES.iter().map(read).collect();
-            History { releases, changes: parse_changes(lapidary_wgsl::CHANGELOG) }
+            History { releases, changes: parse_changes(CHANGELOG) }
         })
     }
 

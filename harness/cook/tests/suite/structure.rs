@@ -33,7 +33,8 @@ fn dependencies(manifest: &Path) -> BTreeMap<String, bool> {
     lines
         .map(|line| {
             let name = line.split(['.', ' ', '=']).next().unwrap_or_default();
-            (name.trim_start_matches("lapidary-").to_owned(), line.contains("optional = true"))
+            // A package's name has hyphens where its folder has underscores.
+            (name.trim_start_matches("lapidary-").replace('-', "_"), line.contains("optional = true"))
         })
         .collect()
 }

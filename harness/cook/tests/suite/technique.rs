@@ -48,8 +48,8 @@ fn a_new_technique_keeps_the_contract_and_is_known_to_cargo() {
     assert_eq!(parse_header(&source).expect("a header").name, "thin_film");
     assert_eq!(parse_functions(&(source + &naive)).expect("comments").len(), 2);
     for (file, line) in [
-        ("Cargo.toml", "lapidary-thin_film = { path = \"crates/thin_film\" }"),
-        ("harness/cook/Cargo.toml", "lapidary-thin_film = { workspace = true, features = [\"formulas\"] }"),
+        ("Cargo.toml", "lapidary-thin-film = { path = \"crates/thin_film\", version = \"0.2.0\" }"),
+        ("harness/cook/Cargo.toml", "lapidary-thin-film = { workspace = true, features = [\"formulas\"] }"),
     ] {
         let text = read(file);
         let lines: Vec<&str> = text.lines().collect();

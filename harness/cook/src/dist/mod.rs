@@ -1,5 +1,7 @@
 //! `cook dist`: the modules and recipes in every language, as files to take along.
 
+pub mod npm;
+
 use crate::cookbook::{marks, modules};
 use crate::folder::{self, FolderError, Owner};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
@@ -47,12 +49,15 @@ pub struct Written {
 /// not write.
 pub fn write(out: &Path) -> Result<Written, DistError> {
     let mut files = texts()?;
+    files.extend(npm::files()?.into_iter().map(|(name, bytes)| (format!("npm/{name}"), bytes)));
     files.push(("README.md".to_owned(), readme(&files).into_bytes()));
     for (name, text) in [
-        ("LICENSE-MIT-0", include_str!("../../../LICENSE-MIT-0")),
-        ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
+        ("LICENSE-MIT-0", include_str!("../../../../LICENSE-MIT-0")),
+        ("LICENSE-APACHE", include_str!("../../../../LICENSE-APACHE")),
     ] {
-        files.push((name.to_owned(), text.as_bytes().to_vec()));
+        for folder in ["", "npm/"] {
+            files.push((format!("{folder}{name}"), text.as_bytes().to_vec()));
+        }
     }
     let folder = folder::replace(out, OWNER, |folder| -> Result<(), DistError> {
         for (name, bytes) in &files {
@@ -140,6 +145,8 @@ what was set. Clip space is WebGPU's everywhere: y up, depth from 0 to 1.
 - `glsl`: GLSL 4.50; `glsl-es`: GLSL ES 3.00, of WebGL 2
 - `hlsl`: HLSL, shader model 5.1 and later
 - `msl`: the Metal Shading Language 2.0
+- `npm`: a package with the WGSL and the GLSL ES as strings, recipes with their bindings and layouts, and what
+  runs a frame; `npm pack` makes it
 - `spirv`: recipes alone; sets and bindings are WGSL's groups and bindings
 
 "

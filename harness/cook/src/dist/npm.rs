@@ -1,0 +1,219 @@
+//! An npm package: the modules and recipes as strings, with types, and what runs a frame.
+
+use super::DistError;
+use crate::cookbook::{marks, modules};
+use lapidary_specialise::layout::StructLayout;
+use lapidary_translate::{Language, TranslateError, library};
+use lapidary_wgsl::RECIPES;
+use naga::{AddressSpace, ImageClass, Module, StorageAccess, TypeInner};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Name of the package.
+pub const NAME: &str = "lapidary-shaders";
+
+/// Returns the package's files.
+///
+/// # Errors
+/// Returns an error if a text cannot be translated.
+pub fn files() -> Result<Vec<(String, Vec<u8>)>, DistError> {
+    let mut files = vec![
+        ("package.json".to_owned(), text(&package())),
+        ("README.md".to_owned(), README.to_owned()),
+        ("frame.js".to_owned(), include_str!("../../../../docs/engines/frame.js").to_owned()),
+        ("frame.d.ts".to_owned(), FRAME_TYPES.to_owned()),
+        ("recipes.d.ts".to_owned(), RECIPE_TYPES.to_owned()),
+    ];
+    let mut index = [String::new(), String::new()];
+    for module in modules() {
+        let name = module.name;
+        let texts = [("wgsl", module.source.to_owned()), ("glsl-es", library(module.source, name, Language::GlslEs)?)];
+        for ((folder, source), index) in texts.into_iter().zip(&mut index) {
+            files.push((format!("{folder}/{name}.js"), constant(&source)));
+            files.push((format!("{folder}/{name}.d.ts"), TEXT_TYPES.to_owned()));
+            index.push_str(&format!("export {{ default as {name} }} from './{name}.js';\n"));
+        }
+    }
+    for (folder, index) in ["wgsl", "glsl-es"].into_iter().zip(index) {
+        files.push((format!("{folder}/index.js"), index.clone()));
+        files.push((format!("{folder}/index.d.ts"), index));
+    }
+    for recipe in RECIPES {
+        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
+        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
+        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
+        let described = recipe_module(&source, &ir);
+        files.push((format!("recipes/{}.js", recipe.name), described));
+        files.push((
+            format!("recipes/{}.d.ts", recipe.name),
+            "export { wgsl, entryPoints, overrides, bindings, layouts } from '../recipes.js';\n".to_owned(),
+        ));
+    }
+    Ok(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
+}
+
+fn package() -> Value {
+    json!({
+        "name": NAME,
+        "version": env!("CARGO_PKG_VERSION"),
+        "description": "WGSL and GLSL ES for gems and translucent materials, tested against mirrors and oracles",
+        "license": "(MIT-0 OR Apache-2.0)",
+        "type": "module",
+        "sideEffects": false,
+        "keywords": ["wgsl", "webgpu", "webgl", "glsl", "shader", "refraction", "dispersion", "translucency"],
+        "exports": {
+            "./wgsl": { "types": "./wgsl/index.d.ts", "default": "./wgsl/index.js" },
+            "./wgsl/*": { "types": "./wgsl/*.d.ts", "default": "./wgsl/*.js" },
+            "./glsl-es": { "types": "./glsl-es/index.d.ts", "default": "./glsl-es/index.js" },
+            "./glsl-es/*": { "types": "./glsl-es/*.d.ts", "default": "./glsl-es/*.js" },
+            "./recipes/*": { "types": "./recipes/*.d.ts", "default": "./recipes/*.js" },
+            "./frame": { "types": "./frame.d.ts", "default": "./frame.js" },
+            "./package.json": "./package.json"
+        }
+    })
+}
+
+fn text(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+/// Returns a module of JavaScript whose default is a text.
+fn constant(source: &str) -> String {
+    format!("export default {};\n", Value::from(source))
+}
+
+/// Returns a module of JavaScript with a recipe, its entry points, overrides, bindings and layouts.
+fn recipe_module(source: &str, ir: &Module) -> String {
+    let stages: BTreeMap<&str, &str> = ir
+        .entry_points
+        .iter()
+        .map(|point| {
+            let stage = match point.stage {
+                naga::ShaderStage::Vertex => "vertex",
+                naga::ShaderStage::Compute => "compute",
+                _ => "fragment",
+            };
+            (point.name.as_str(), stage)
+        })
+        .collect();
+    let overrides: Vec<&str> = ir.overrides.iter().filter_map(|(_, it)| it.name.as_deref()).collect();
+    let mut bindings: Vec<(u32, u32, Value)> = Vec::new();
+    for (_, variable) in ir.global_variables.iter() {
+        let Some(at) = variable.binding else { continue };
+        let ty = &ir.types[variable.ty];
+        let kind = match (variable.space, &ty.inner) {
+            (AddressSpace::Uniform, _) => "uniform",
+            (AddressSpace::Storage { access }, _) if access.contains(StorageAccess::STORE) => "storage",
+            (AddressSpace::Storage { .. }, _) => "read-only-storage",
+            (_, TypeInner::Sampler { .. }) => "sampler",
+            (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => "storage-texture",
+            _ => "texture",
+        };
+        let of = match ty.inner {
+            TypeInner::Array { base, .. } => ir.types[base].name.as_deref(),
+            _ => ty.name.as_deref(),
+        };
+        let row =
+            json!({ "group": at.group, "binding": at.binding, "name": variable.name, "kind": kind, "struct": of });
+        bindings.push((at.group, at.binding, row));
+    }
+    bindings.sort_by_key(|(group, binding, _)| (*group, *binding));
+    let used: Vec<&str> = bindings.iter().filter_map(|(_, _, row)| row["struct"].as_str()).collect();
+    let layouts: BTreeMap<&str, Value> = StructLayout::all(ir)
+        .filter(|(name, _)| used.contains(name))
+        .map(|(name, layout)| {
+            let fields = layout.fields.iter().map(|field| {
+                let offset = field.offsets.first().copied().unwrap_or_default();
+                (field.name.clone(), json!({ "type": field.ty, "offset": offset }))
+            });
+            let fields: serde_json::Map<String, Value> = fields.collect();
+            (name, json!({ "size": layout.size, "fields": fields }))
+        })
+        .collect();
+    let bindings: Vec<Value> = bindings.into_iter().map(|(_, _, row)| row).collect();
+    format!(
+        "export const wgsl = {};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {:#};\n",
+        Value::from(source),
+        json!(stages),
+        json!(overrides),
+        json!(bindings),
+        json!(layouts)
+    )
+}
+
+const TEXT_TYPES: &str = "declare const text: string;\nexport default text;\n";
+
+const RECIPE_TYPES: &str = "\
+/** A whole shader; its overrides named EFFECT_… switch effects on and off. */
+export const wgsl: string;
+/** The stage of each entry point. */
+export const entryPoints: Record<string, 'vertex' | 'fragment' | 'compute'>;
+/** Names for a pipeline's `constants`. */
+export const overrides: string[];
+export interface Binding {
+  group: number;
+  binding: number;
+  name: string;
+  kind: 'uniform' | 'storage' | 'read-only-storage' | 'sampler' | 'texture' | 'storage-texture';
+  /** The struct that the buffer holds, or holds an array of; null if there is none. */
+  struct: string | null;
+}
+export const bindings: Binding[];
+export interface Layout {
+  /** Bytes of one struct. */
+  size: number;
+  /** Type in WGSL and offset in bytes; a field of an inner struct is named `outer.inner`. */
+  fields: Record<string, { type: string; offset: number }>;
+}
+/** Layouts of the structs in `bindings` that hold 32-bit numbers alone. */
+export const layouts: Record<string, Layout>;
+";
+
+const FRAME_TYPES: &str = "\
+export interface Picture {
+  width: number;
+  height: number;
+  texels: Float32Array | Uint8Array;
+}
+export interface Pass {
+  kind: 'render' | 'compute' | 'clear' | 'copy' | 'read';
+  name?: string;
+}
+/** Runs what `cook frame` writes. */
+export class Frame {
+  /** Makes everything that the frame in a folder needs; nothing is drawn yet. */
+  static load(device: GPUDevice, folder: string): Promise<Frame>;
+  /** Runs all passes, and returns the pictures by name. */
+  run(): Promise<Record<string, Picture>>;
+  /** Submits the passes that a test selects, by default all that do not read back. */
+  draw(selects?: (pass: Pass) => boolean): void;
+  /** The buffers of a name that hold a struct. */
+  buffers(name: string): number[];
+  /** The initial value of a field of a buffer. */
+  field(place: number, name: string): Float32Array;
+  /** Writes a field of a buffer. */
+  write(place: number, name: string, floats: ArrayLike<number>): void;
+  /** Frees what the frame holds on the device. */
+  destroy(): void;
+}
+";
+
+const README: &str = "\
+# lapidary-shaders
+
+Shaders for gems and translucent materials, as text: each technique is functions without bindings, in WGSL and in
+GLSL ES 3.00, with its units, domain and accuracy in its comments; each recipe a whole WGSL shader.
+
+```js
+import refraction from 'lapidary-shaders/wgsl/refraction';      // one module
+import { fresnel, absorption } from 'lapidary-shaders/glsl-es'; // several
+import { wgsl, bindings, layouts } from 'lapidary-shaders/recipes/gem_walk';
+import { Frame } from 'lapidary-shaders/frame';                  // runs what `cook frame` writes
+
+const module = device.createShaderModule({ code: `${refraction}\n${shaderOfMyOwn}` });
+```
+
+Modules can stand in one text in any order. `layouts` has the offset of each field of a recipe's structs.
+
+Licence: MIT-0 or Apache-2.0, at your choice.
+";
