@@ -38,9 +38,9 @@ fn kind(module: &Module, variable: &GlobalVariable) -> Kind {
     }
 }
 
-/// Gives every binding of a shader its place, writes the places into `setting`, and returns them in WGSL's
-/// order.
-pub fn assign(module: &Module, language: Language, setting: &mut Setting) -> Vec<Place> {
+/// Gives every binding of a shader its place, writes the places into `setting`, and returns in WGSL's order those
+/// that are left in `used`. Its entry points have one numbering, so that they can be used together.
+pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut Setting) -> Vec<Place> {
     let mut bound: Vec<&GlobalVariable> =
         module.global_variables.iter().map(|(_, variable)| variable).filter(|it| it.binding.is_some()).collect();
     bound.sort_by_key(|variable| variable.binding.map(|at| (at.group, at.binding)));
@@ -101,17 +101,19 @@ pub fn assign(module: &Module, language: Language, setting: &mut Setting) -> Vec
                 _ => "uniform of its name".to_owned(),
             },
         };
-        places.push(Place { wgsl: (at.group, at.binding), name, place });
+        if used.global_variables.iter().any(|(_, left)| left.binding == variable.binding) {
+            places.push(Place { wgsl: (at.group, at.binding), name, place });
+        }
     }
     if language == Language::Msl {
-        let sizes = needs_sizes(module).then(|| u8::try_from(next("buffer")).unwrap_or(u8::MAX));
-        for entry in &module.entry_points {
+        let sizes = (!sized(module).is_empty()).then(|| u8::try_from(next("buffer")).unwrap_or(u8::MAX));
+        for entry in &used.entry_points {
             let own =
                 msl::EntryPointResources { resources: resources.clone(), sizes_buffer: sizes, ..Default::default() };
             setting.msl.per_entry_point_map.insert(entry.name.clone(), own);
         }
-        if let Some(slot) = sizes {
-            let place = format!("[[buffer({slot})]]: the sizes in bytes of {}", sized(module).join(", "));
+        if let (Some(slot), false) = (sizes, sized(used).is_empty()) {
+            let place = format!("[[buffer({slot})]]: the sizes in bytes of {}", sized(used).join(", "));
             places.push(Place { wgsl: (u32::MAX, u32::MAX), name: "_buffer_sizes".to_owned(), place });
         }
     }
@@ -138,8 +140,4 @@ fn sized(module: &Module) -> Vec<String> {
     let is_sized = |variable: &GlobalVariable| module.types[variable.ty].inner.is_dynamically_sized(&module.types);
     let variables = module.global_variables.iter().map(|(_, variable)| variable);
     variables.filter(|variable| is_sized(variable)).filter_map(|variable| variable.name.clone()).collect()
-}
-
-fn needs_sizes(module: &Module) -> bool {
-    !sized(module).is_empty()
 }

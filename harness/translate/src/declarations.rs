@@ -21,6 +21,12 @@ impl<'a> Declaration<'a> {
         let length = self.lines.iter().take_while(|line| line.starts_with("//")).count();
         &self.lines[..length]
     }
+
+    /// Whether it is a comment with a licence, which heads what follows.
+    #[must_use]
+    pub fn is_header(&self) -> bool {
+        self.name.is_none() && self.lines.iter().any(|line| line.starts_with("// SPDX-License-Identifier:"))
+    }
 }
 
 /// Splits a text into declarations. The text must be formatted: a declaration begins at the start of
@@ -69,19 +75,42 @@ pub fn reached(declarations: &[Declaration<'_>], is_root: impl Fn(&Declaration<'
     taken
 }
 
-/// Returns the text with one function and what it needs, below the text's first comment; `None` if it
-/// has no such function.
+/// Returns the text of those declarations that are needed. A comment with a licence heads what follows up to
+/// the next, and goes if nothing of that is left; the last one stays. Several empty lines become one.
+#[must_use]
+pub fn text_of(declarations: &[Declaration<'_>], needed: &[bool]) -> String {
+    let headers: Vec<usize> = (0..declarations.len()).filter(|at| declarations[*at].is_header()).collect();
+    let is_left = |header: usize| {
+        let end = headers.iter().copied().find(|next| *next > header).unwrap_or(declarations.len());
+        end == declarations.len() || (header..end).any(|at| needed[at] && declarations[at].name.is_some())
+    };
+    let mut text = String::new();
+    for (at, declaration) in declarations.iter().enumerate() {
+        let is_kept = match declaration.name {
+            Some(_) => needed[at],
+            None => !headers.contains(&at) || is_left(at),
+        };
+        for line in declaration.lines.iter().filter(|_| is_kept) {
+            if !line.trim().is_empty() || !(text.is_empty() || text.ends_with("\n\n")) {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// Returns the text with one function or entry point and what it needs; `None` if it has no such
+/// function. The line of the version goes: it is that of the whole text.
 #[must_use]
 pub fn of_function(source: &str, function: &str) -> Option<String> {
-    let lines: Vec<&str> = source.lines().collect();
+    let lines: Vec<&str> = source.lines().filter(|line| !line.starts_with("// Version:")).collect();
     let declarations = declarations(&lines);
     let is_function = |line: &&str| line.strip_prefix("fn ").is_some_and(|rest| words(rest).next() == Some(function));
     let is_root = |declaration: &Declaration<'_>| declaration.lines.iter().any(is_function);
     declarations.iter().find(|declaration| is_root(declaration))?;
-    let header = declarations.first().filter(|first| first.name.is_none());
-    let needed = declarations.iter().zip(reached(&declarations, is_root)).filter(|(_, is_needed)| *is_needed);
-    let texts = header.into_iter().chain(needed.map(|(declaration, _)| declaration));
-    Some(texts.map(|declaration| declaration.lines.join("\n")).collect::<Vec<_>>().join("\n\n") + "\n")
+    let needed = reached(&declarations, is_root);
+    Some(text_of(&declarations, &needed).trim_end().to_owned() + "\n")
 }
 
 /// Returns the identifiers and numbers of a line of code.

@@ -1,4 +1,4 @@
-//! HLSL, as every compiler of it takes it.
+//! HLSL without naga's heap of samplers, and as glslang takes it.
 
 use crate::bindings;
 use crate::items::{Item, Kind};
@@ -38,8 +38,9 @@ pub fn portable(text: &str, module: &Module) -> String {
 fn sampler(line: &str, module: &Module) -> Option<String> {
     let (declared, _) = line.strip_prefix("static const ")?.split_once(" = naga")?;
     let name = declared.rsplit(' ').next()?;
-    // A keyword ends with an underscore here.
-    let is_it = |variable: &GlobalVariable| variable.name.as_deref() == Some(name.trim_end_matches('_'));
+    // A keyword ends with an underscore here, and a name that a function has as well with a number.
+    let base = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+    let is_it = |variable: &GlobalVariable| variable.name.as_deref().is_some_and(|own| own == name || own == base);
     let (_, variable) = module.global_variables.iter().find(|(_, variable)| is_it(variable))?;
     let space = variable.binding?.group;
     Some(format!("{declared} : register({}, space{space});", bindings::register_of(module, variable)))

@@ -7,7 +7,7 @@ use crate::names::{prefix_helpers, take_numbers_off};
 use crate::{Language, Setting, TranslateError, written};
 use naga::ShaderStage;
 use naga::back::glsl;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Translates functions, structs and consts, with their comments and names.
 ///
@@ -32,6 +32,7 @@ pub fn library(source: &str, name: &str, language: Language) -> Result<String, T
     let header = declarations.first().filter(|first| first.name.is_none()).map_or(&[][..], Declaration::comment);
     let mut text: String = header.iter().flat_map(|line| [line, "\n"]).collect();
     text.push_str(&note(name, language));
+    text.push_str(&other_names(&items, source));
     text.push_str(&commented(&items, &declarations));
     Ok(text)
 }
@@ -140,14 +141,28 @@ pub(crate) fn culprit(source: &str, language: Language, why: String) -> Translat
 /// Returns the comment that says what language this is, and how it is pasted.
 fn note(name: &str, language: Language) -> String {
     let how = match language {
-        Language::Glsl => "Paste it below `#version 450`, or above 4.50's.",
+        Language::Glsl => "Paste it below `#version 450`.",
         Language::GlslEs => "Paste it below `#version 300 es`.",
-        Language::Hlsl => "Paste or #include it.",
-        Language::Msl => "Paste or #include it.",
+        Language::Hlsl | Language::Msl => "Paste or #include it.",
     };
     format!(
-        "//\n// {language}, translated from {name}.wgsl by naga: its names, arguments and results. {how}\n// The accuracy is that of the WGSL: a compiler that reorders or fuses floats may lose it.\n"
+        "//\n// {language}, translated from the WGSL of {name} by naga. {how}\n// The accuracy is that of the WGSL: a compiler that reorders or fuses floats may lose it.\n"
     )
+}
+
+/// Returns the comment with the names that end with an underscore here and not in the source.
+pub(crate) fn other_names(items: &[Item], source: &str) -> String {
+    let own: HashSet<&str> = source.lines().flat_map(words).collect();
+    let of_item = |item: &Item| -> Vec<String> {
+        let found = words(&item.text).filter(|word| word.ends_with('_') && own.contains(word.trim_end_matches('_')));
+        found.map(str::to_owned).collect()
+    };
+    let names: BTreeSet<String> = items.iter().flat_map(of_item).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    format!("// With an underscore here, as words of the language or for a digit at the end: {}.\n", names.join(", "))
 }
 
 fn capital(word: &str) -> String {

@@ -8,6 +8,43 @@ fn used(text: &str) -> HashSet<&str> {
     tokens(text).into_iter().filter_map(|token| if let Token::Name(name) = token { Some(name) } else { None }).collect()
 }
 
+/// Returns the names that a text declares as arguments or variables: a name after a type, before a value, the
+/// next argument or the end.
+fn declared(text: &str) -> HashSet<&str> {
+    let tokens: Vec<Token<'_>> = tokens(text).into_iter().filter(|token| !token.text().trim().is_empty()).collect();
+    let is_type = |token: Token<'_>| {
+        let text = token.text();
+        text == "&" || text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let names = (1..tokens.len().saturating_sub(1)).filter_map(|at| match (tokens[at - 1], tokens[at]) {
+        (before, Token::Name(name)) if is_type(before) && before.text() != "return" => {
+            [";", "=", ",", ")", "["].contains(&tokens[at + 1].text()).then_some(name)
+        }
+        _ => None,
+    });
+    names.collect()
+}
+
+/// Gives a writer's names of bindings and variables back the shader's own, in `(writer's, own)`. What a function
+/// calls so itself gets another name where both meet.
+pub fn rename_globals(items: &mut [Item], renames: &[(String, String)]) {
+    for item in items.iter_mut() {
+        let text = item.text.clone();
+        let names = used(&text);
+        let mut here = HashMap::new();
+        for (from, to) in renames.iter().filter(|(from, _)| names.contains(from.as_str())) {
+            here.insert(from.clone(), to.clone());
+            if names.contains(to.as_str()) {
+                here.insert(to.clone(), format!("{to}_here"));
+            }
+        }
+        item.text = renamed(&item.text, &here);
+        if let Some(name) = here.get(&item.name) {
+            item.name.clone_from(name);
+        }
+    }
+}
+
 /// Returns a text with its names replaced by those of `renamed`.
 pub fn renamed(text: &str, renamed: &HashMap<String, String>) -> String {
     let replace = |token: Token<'_>| match token {
@@ -27,41 +64,16 @@ pub fn restore_globals(items: &mut [Item], own: &HashSet<&str>) {
             numbered.push((item.name.clone(), base.to_owned()));
         }
     }
-    for item in items.iter_mut() {
-        let text = item.text.clone();
-        let names = used(&text);
-        for (name, base) in numbered.iter().filter(|(name, _)| names.contains(name.as_str())) {
-            let mut renames = HashMap::from([(name.clone(), base.clone())]);
-            if names.contains(base.as_str()) {
-                renames.insert(base.clone(), format!("{base}_here"));
-            }
-            item.text = renamed(&item.text, &renames);
-            if item.name == *name {
-                item.name.clone_from(base);
-            }
-        }
-    }
+    rename_globals(items, &numbered);
 }
 
 /// Takes off the numbers by which a writer tells apart what has one name in two functions, where
 /// within the function one name is left.
 ///
-/// A writer never leaves a keyword of its language bare, so that a bare name that is no call's can
-/// stand in any function.
+/// A writer never declares anything by a keyword of its language, so that a name that is declared bare
+/// somewhere can stand in any function.
 pub fn take_numbers_off(items: &mut [Item]) {
-    let bare: HashSet<String> = {
-        let mut bare = HashSet::new();
-        for item in items.iter() {
-            let tokens = tokens(&item.text);
-            for (at, token) in tokens.iter().enumerate() {
-                let is_called = tokens.get(at + 1).is_some_and(|next| next.text() == "(");
-                if let (Token::Name(name), false) = (token, is_called) {
-                    bare.insert((*name).to_owned());
-                }
-            }
-        }
-        bare
-    };
+    let bare: HashSet<String> = items.iter().flat_map(|item| declared(&item.text)).map(str::to_owned).collect();
     let globals: HashSet<String> = items.iter().map(|item| item.name.clone()).collect();
     for item in items.iter_mut().filter(|item| item.kind == Kind::Function) {
         let text = item.text.clone();
@@ -94,7 +106,9 @@ pub fn prefix_helpers(items: &mut [Item], own: &HashSet<&str>, functions: &str, 
     let mut renames = HashMap::new();
     for item in items.iter().filter(|item| !item.name.is_empty() && !own.contains(item.name.as_str())) {
         let is_type = matches!(item.kind, Kind::Struct | Kind::Alias);
-        let name = item.name.strip_prefix("naga_").unwrap_or(&item.name).trim_matches('_');
+        let array = array_of(&item.text);
+        let name = array.as_deref().unwrap_or(&item.name);
+        let name = name.strip_prefix("naga_").unwrap_or(name).trim_matches('_');
         let name = name.strip_prefix("Naga").unwrap_or(name);
         let mut new = match (is_type, name.strip_prefix("Construct")) {
             (true, _) => format!("{types}{}", camel(name)),
@@ -118,6 +132,13 @@ pub fn prefix_helpers(items: &mut [Item], own: &HashSet<&str>, functions: &str, 
             item.name.clone_from(new);
         }
     }
+}
+
+/// Returns the name of a struct that only wraps an array: its element and its length, not the number of a type.
+fn array_of(text: &str) -> Option<String> {
+    let (_, inside) = text.strip_prefix("struct type_")?.split_once('{')?;
+    let (element, length) = inside.trim().split_once(" inner[")?;
+    Some(format!("{}_array{}", element.rsplit("::").next()?, length.split(']').next()?))
 }
 
 fn camel(name: &str) -> String {
@@ -162,6 +183,14 @@ mod tests {
     }
 
     #[test]
+    fn no_keyword_is_left_bare() {
+        let text = "layout(location = 0) out vec4 color;\nfloat a(float out_, float vertex_) { return out_; }\nfloat b(float out_1, float vertex_1) { return out_1 * vertex_1; }";
+        let mut found = items(text);
+        take_numbers_off(&mut found);
+        assert!(self::text(&found).ends_with("float b(float out_1, float vertex_1) { return out_1 * vertex_1; }"));
+    }
+
+    #[test]
     fn a_binding_has_its_name_back() {
         let mut found = items(
             "cbuffer view_1 : register(b0) { View view_1; }\nfloat a(float view) { return view; }\nfloat b() { float view = view_1.x; return view; }",
@@ -177,7 +206,7 @@ mod tests {
             "struct type_5 { float inner[2]; };\nstruct OpticHit { float at; };\nOpticHit ConstructOpticHit(float at) { return at; }\nint naga_f2i32(float x) { return int(x); }\nint naga_f2i32(vec2 x) { return int(x.x); }\nOpticHit optic_hit(type_5 x) { return ConstructOpticHit(naga_f2i32(x.inner[0])); }",
         );
         prefix_helpers(&mut found, &HashSet::from(["OpticHit", "optic_hit"]), "optic_", "Optic");
-        let expected = "struct OpticType5 { float inner[2]; };\nstruct OpticHit { float at; };\nOpticHit optic_make_hit(float at) { return at; }\nint optic_f2i32(float x) { return int(x); }\nint optic_f2i32(vec2 x) { return int(x.x); }\nOpticHit optic_hit(OpticType5 x) { return optic_make_hit(optic_f2i32(x.inner[0])); }";
+        let expected = "struct OpticFloatArray2 { float inner[2]; };\nstruct OpticHit { float at; };\nOpticHit optic_make_hit(float at) { return at; }\nint optic_f2i32(float x) { return int(x); }\nint optic_f2i32(vec2 x) { return int(x.x); }\nOpticHit optic_hit(OpticFloatArray2 x) { return optic_make_hit(optic_f2i32(x.inner[0])); }";
         assert_eq!(text(&found), expected);
     }
 }

@@ -4,13 +4,12 @@ use crate::bindings::{self, Place};
 use crate::declarations::{Declaration, declarations, without_comment};
 use crate::hlsl;
 use crate::items::{Item, items};
-use crate::library::{commented, culprit};
-use crate::names::{renamed, restore_globals, take_numbers_off};
+use crate::library::{commented, culprit, other_names};
+use crate::names::{rename_globals, restore_globals, take_numbers_off};
 use crate::{Language, Setting, TranslateError, written};
 use naga::back::{glsl, spv};
 use naga::valid::ModuleInfo;
 use naga::{AddressSpace, Module, ShaderStage};
-use std::collections::HashMap;
 
 /// Translates a whole shader. Its first comment tells what was set, and where each binding is found.
 ///
@@ -21,7 +20,8 @@ use std::collections::HashMap;
 /// lacks something that the shader needs.
 pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>) -> Result<String, TranslateError> {
     let loads = if language.is_glsl() { depths_as_floats(source) } else { None };
-    let (mut module, _) = lapidary_specialise::parse(loads.as_deref().unwrap_or(source), name)?;
+    let (whole, _) = lapidary_specialise::parse(loads.as_deref().unwrap_or(source), name)?;
+    let mut module = whole.clone();
     let entry = entry_of(&module, name, language, entry)?;
     let lacks = |what: &str, why: &str| TranslateError::Lacks {
         language: language.title(),
@@ -36,15 +36,16 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     let info = lapidary_specialise::validate(&module).map_err(|error| lacks("the shader", &error.to_string()))?;
     if let (Language::GlslEs, Some((entry, stage))) = (language, &entry) {
         if *stage == ShaderStage::Compute {
-            return Err(lacks(entry, "compute shaders"));
+            return Err(lacks(&format!("{name}::{entry}"), "compute shaders"));
         }
-        if let Some(buffer) = storage_buffer(&module) {
-            return Err(lacks(buffer, "storage buffers"));
+        let buffers = storage_buffers(&module);
+        if !buffers.is_empty() {
+            return Err(lacks(&format!("{name}::{entry}"), &format!("storage buffers (`{}`)", buffers.join("`, `"))));
         }
     }
     // No flip of clip space: the text says what the shader says.
     let mut setting = Setting::strict(entry, glsl::WriterFlags::empty());
-    let places = bindings::assign(&module, language, &mut setting);
+    let places = bindings::assign(&whole, &module, language, &mut setting);
     hlsl::give_heap(&module, &mut setting.hlsl);
     let (body, found) = written(&module, &info, language, &setting)
         .map_err(|why| culprit(loads.as_deref().unwrap_or(source), language, why))?;
@@ -61,16 +62,21 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     let own = declarations.iter().filter_map(|declaration| declaration.name).collect();
     restore_globals(&mut items, &own);
     take_numbers_off(&mut items);
+    // GLSL calls every entry point so.
+    for item in items.iter_mut().filter(|item| language.is_glsl() && item.name == "main") {
+        item.name = setting.entry.as_ref().map_or_else(String::new, |(entry, _)| entry.clone());
+    }
     let mut text = String::new();
     // A version's directive comes first.
     let version = items.iter().position(|item| item.text.starts_with("#version"));
     if let Some(at) = version {
         text = format!("{}\n", items.remove(at).text);
     }
-    text.push_str(&header(&declarations));
+    text.push_str(&header(&declarations, &items));
     text.push_str(&note(name, language, &setting, &body));
+    text.push_str(&other_names(&items, source));
     text.push_str(&settings(&overrides, &declarations));
-    text.push_str(&table(&places, &declarations));
+    text.push_str(&table(&places, &declarations, language));
     text.push_str(&commented(&items, &declarations));
     Ok(text)
 }
@@ -154,43 +160,55 @@ fn depths_as_floats(source: &str) -> Option<String> {
     (!names.is_empty()).then_some(text)
 }
 
-fn storage_buffer(module: &Module) -> Option<&str> {
-    let mut variables = module.global_variables.iter().map(|(_, variable)| variable);
-    variables.find(|variable| matches!(variable.space, AddressSpace::Storage { .. }))?.name.as_deref()
+fn storage_buffers(module: &Module) -> Vec<&str> {
+    let variables = module.global_variables.iter().map(|(_, variable)| variable);
+    let buffers = variables.filter(|variable| matches!(variable.space, AddressSpace::Storage { .. }));
+    buffers.filter_map(|variable| variable.name.as_deref()).collect()
 }
 
 /// Returns GLSL's items with the shader's own names of bindings.
 fn with_names(found: &[Item], module: &Module, reflection: &glsl::ReflectionInfo) -> Vec<Item> {
-    let mut names = HashMap::new();
+    let mut names = Vec::new();
     for (handle, variable) in module.global_variables.iter() {
         let (Some(at), Some(name)) = (variable.binding, &variable.name) else { continue };
         for stage in ["vs", "fs", "cs"] {
-            names.insert(format!("_group_{}_binding_{}_{stage}", at.group, at.binding), name.clone());
+            names.push((format!("_group_{}_binding_{}_{stage}", at.group, at.binding), name.clone()));
         }
         if let Some(block) = reflection.uniforms.get(&handle) {
-            names.insert(block.clone(), format!("{name}_block"));
+            names.push((block.clone(), format!("{name}_block")));
         }
     }
-    let text: Vec<String> = found.iter().map(|item| renamed(&item.text, &names)).collect();
-    items(&text.join("\n"))
+    let mut found = found.to_vec();
+    rename_globals(&mut found, &names);
+    found
 }
 
-/// Returns the first comment of the last text that has one: a recipe's own, below its modules'.
-fn header(declarations: &[Declaration<'_>]) -> String {
-    let is_header = |declaration: &&Declaration<'_>| {
-        let comment = declaration.comment();
-        declaration.name.is_none() && comment.iter().any(|line| line.starts_with("// SPDX-License-Identifier:"))
-    };
-    let headers: Vec<&Declaration<'_>> = declarations.iter().filter(is_header).collect();
-    let Some((own, others)) = headers.split_last() else { return String::new() };
-    let mut text: String = own.comment().iter().flat_map(|line| [line, "\n"]).collect();
+/// Returns the first comment of the last text that has one: a recipe's own, below its modules'. Then come those of
+/// which something is left.
+fn header(declarations: &[Declaration<'_>], items: &[Item]) -> String {
+    let is_left = |name: &str| items.iter().any(|item| item.name == name || item.text.contains(name));
+    let mut headers: Vec<(&Declaration<'_>, bool)> = Vec::new();
+    for declaration in declarations {
+        if declaration.is_header() {
+            headers.push((declaration, false));
+        } else if let (Some((_, has_any)), Some(name)) = (headers.last_mut(), declaration.name) {
+            *has_any |= is_left(name);
+        }
+    }
+    let Some(((own, _), others)) = headers.split_last() else { return String::new() };
+    // What a recipe is made of is said below.
+    let made_of = ["// requires:", "// parts:", "// compares:"];
+    let is_told = |line: &&&str| !made_of.iter().any(|start| line.starts_with(start));
+    let mut text: String = own.comment().iter().filter(is_told).flat_map(|line| [line, "\n"]).collect();
+    let others: Vec<&Declaration<'_>> =
+        others.iter().filter(|(_, has_any)| *has_any).map(|(other, _)| *other).collect();
     if !others.is_empty() {
         text.push_str("//\n// It holds:\n");
     }
     for other in others {
-        // Name and purpose, licence, version, and source with its further lines.
+        // Name and purpose, licence, and source with its further lines.
         let lines = other.comment().iter().take_while(|line| **line != "//");
-        let kept = lines.filter(|line| !line.starts_with("// Version:"));
+        let kept = lines.filter(is_told).filter(|line| !line.starts_with("// Version:"));
         text.extend(kept.enumerate().map(|(at, line)| {
             let line = line.trim_start_matches("//").trim_start();
             format!("// {} {line}\n", if at == 0 { "-" } else { " " })
@@ -206,10 +224,15 @@ fn note(name: &str, language: Language, setting: &Setting, body: &str) -> String
     let mut say = |line: &str| text.push_str(&format!("// {line}\n"));
     let is_drawn = setting.entry.as_ref().is_none_or(|(_, stage)| *stage != ShaderStage::Compute);
     match language {
-        Language::Glsl | Language::GlslEs if is_drawn => {
-            say("Clip space is WebGPU's: y up, depth from 0 to 1. In OpenGL call glClipControl(GL_LOWER_LEFT,");
-            say("GL_ZERO_TO_ONE), or write 2 z - w into gl_Position.z where there is no such call. Row 0 of a");
-            say("target is the top in WebGPU and the bottom in OpenGL: gl_FragCoord.y counts from there.");
+        Language::Glsl if is_drawn => {
+            say("Clip space is WebGPU's: y up, depth from 0 to 1; call glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE).");
+            say("Row 0 of a target is the top in WebGPU and the bottom here: gl_FragCoord.y counts from there.");
+        }
+        Language::GlslEs if is_drawn => {
+            say(
+                "Clip space is WebGPU's: y up, depth from 0 to 1. A vertex shader's gl_Position.z is to become 2 z - w.",
+            );
+            say("Row 0 of a target is the top in WebGPU and the bottom here: gl_FragCoord.y counts from there.");
         }
         Language::Hlsl if is_drawn => {
             say("Clip space is Direct3D's as it is WebGPU's. SV_VertexID and SV_InstanceID start at 0 in each");
@@ -240,7 +263,7 @@ fn settings(overrides: &[String], declarations: &[Declaration<'_>]) -> String {
 }
 
 /// Returns the comment with the bindings' places.
-fn table(places: &[Place], declarations: &[Declaration<'_>]) -> String {
+fn table(places: &[Place], declarations: &[Declaration<'_>], language: Language) -> String {
     let mut rows = Vec::new();
     for place in places {
         let declaration = declarations.iter().find(|declaration| declaration.name == Some(place.name.as_str()));
@@ -251,14 +274,20 @@ fn table(places: &[Place], declarations: &[Declaration<'_>]) -> String {
             (u32::MAX, _) => String::new(),
             (group, binding) => format!("@group({group}) @binding({binding}) "),
         };
-        rows.push((format!("{at}{}", if code.is_empty() { &place.name } else { code }), &place.place));
+        // In Metal a binding is an argument, without a place for its comment.
+        let comment = match (language, declaration) {
+            (Language::Msl, Some(declaration)) => declaration.comment(),
+            _ => &[],
+        };
+        rows.push((format!("{at}{}", if code.is_empty() { &place.name } else { code }), &place.place, comment));
     }
     if rows.is_empty() {
         return String::new();
     }
     let mut text = "//\n// Bindings, in WGSL and here:\n".to_owned();
-    for (wgsl, place) in rows {
+    for (wgsl, place, comment) in rows {
         text.push_str(&format!("//   {wgsl}: {place}\n"));
+        text.extend(comment.iter().map(|line| format!("//     {}\n", line.trim_start_matches("//").trim_start())));
     }
     text
 }
