@@ -169,18 +169,20 @@ fn of_one_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8
 }
 
 fn of_recipe(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
-    if let Some(language) = to.language() {
-        return Ok(shader(source, name, language, entry)?.into_bytes());
-    }
     let (mut ir, info) = dispatch::parse(source, name)?;
     if let Some(entry) = entry
         && !ir.entry_points.iter().any(|point| point.name == entry)
     {
-        let points: Vec<String> = ir.entry_points.iter().map(|point| format!("{name}::{}", point.name)).collect();
-        return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", "))));
+        let points: Vec<&str> = ir.entry_points.iter().map(|point| point.name.as_str()).collect();
+        let suggestion = nearest::suggest_function(name, entry, &points);
+        return Err(Failure(format!("`{name}` has no entry point `{entry}`{suggestion}")));
+    }
+    if let Some(language) = to.language() {
+        return Ok(shader(source, name, language, entry)?.into_bytes());
     }
     if to == Target::Wgsl {
-        return Ok(source.as_bytes().to_vec());
+        let alone = entry.and_then(|entry| of_function(source, entry));
+        return Ok(alone.unwrap_or_else(|| source.to_owned()).into_bytes());
     }
     if let Some(entry) = entry {
         ir.entry_points.retain(|point| point.name == entry);

@@ -151,24 +151,12 @@ fn reached(lines: &[String]) -> String {
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
     let declarations = declarations(&lines);
     let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
-    let needed = declarations::reached(&declarations, |declaration| declaration.is_entry);
-    let mut text = String::new();
-    for (declaration, is_needed) in declarations.iter().zip(needed) {
-        if is_needed || declaration.name.is_none() || !has_entry {
-            for line in &declaration.lines {
-                // One empty line is enough.
-                if !line.trim().is_empty() || !(text.is_empty() || text.ends_with("\n\n")) {
-                    text.push_str(line);
-                    text.push('\n');
-                }
-            }
-        }
-    }
-    text
+    let needed = declarations::reached(&declarations, |declaration| declaration.is_entry || !has_entry);
+    declarations::text_of(&declarations, &needed)
 }
 
 /// Returns a recipe with its modules, cut as by [`cut`], without the modules, naive forms and parts of
-/// which the cut recipe uses nothing.
+/// which the cut recipe uses nothing, and without the lines that say what it is made of.
 pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
     let code = |line: &str| line.split("//").next().unwrap_or_default().trim().to_owned();
     let own = cut(&recipe.own_text().join("\n"), off)?;
@@ -185,7 +173,10 @@ pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
     // A naive form uses its module.
     let required = recipe.requires().into_iter().filter(|name| is_used(source(name)) || compared.contains(name));
     let last: Vec<&str> = compared.iter().map(|name| naive(name)).chain([own.as_str()]).collect();
-    Ok(lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n")))
+    let whole = lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n"));
+    let made_of = ["// requires:", "// parts:", "// compares:"];
+    let kept = whole.lines().filter(|line| !made_of.iter().any(|start| line.starts_with(start)));
+    Ok(kept.flat_map(|line| [line, "\n"]).collect())
 }
 
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an

@@ -18,11 +18,10 @@ pub const NAME: &str = "lapidary-shaders";
 /// Returns an error if a text cannot be translated.
 pub fn files() -> Result<Vec<(String, Vec<u8>)>, DistError> {
     let mut files = vec![
-        ("package.json".to_owned(), text(&package())),
+        ("package.json".to_owned(), PACKAGE.replace("VERSION", env!("CARGO_PKG_VERSION")).replace("NAME", NAME)),
         ("README.md".to_owned(), README.to_owned()),
         ("frame.js".to_owned(), include_str!("../../../../docs/engines/frame.js").to_owned()),
         ("frame.d.ts".to_owned(), FRAME_TYPES.to_owned()),
-        ("recipes.d.ts".to_owned(), RECIPE_TYPES.to_owned()),
     ];
     let mut index = [String::new(), String::new()];
     for module in modules() {
@@ -42,39 +41,11 @@ pub fn files() -> Result<Vec<(String, Vec<u8>)>, DistError> {
         let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
         let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
         let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
-        let described = recipe_module(&source, &ir);
-        files.push((format!("recipes/{}.js", recipe.name), described));
-        files.push((
-            format!("recipes/{}.d.ts", recipe.name),
-            "export { wgsl, entryPoints, overrides, bindings, layouts } from '../recipes.js';\n".to_owned(),
-        ));
+        let [code, types] = recipe_module(&source, &ir);
+        files.push((format!("recipes/{}.js", recipe.name), code));
+        files.push((format!("recipes/{}.d.ts", recipe.name), types));
     }
     Ok(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
-}
-
-fn package() -> Value {
-    json!({
-        "name": NAME,
-        "version": env!("CARGO_PKG_VERSION"),
-        "description": "WGSL and GLSL ES for gems and translucent materials, tested against mirrors and oracles",
-        "license": "(MIT-0 OR Apache-2.0)",
-        "type": "module",
-        "sideEffects": false,
-        "keywords": ["wgsl", "webgpu", "webgl", "glsl", "shader", "refraction", "dispersion", "translucency"],
-        "exports": {
-            "./wgsl": { "types": "./wgsl/index.d.ts", "default": "./wgsl/index.js" },
-            "./wgsl/*": { "types": "./wgsl/*.d.ts", "default": "./wgsl/*.js" },
-            "./glsl-es": { "types": "./glsl-es/index.d.ts", "default": "./glsl-es/index.js" },
-            "./glsl-es/*": { "types": "./glsl-es/*.d.ts", "default": "./glsl-es/*.js" },
-            "./recipes/*": { "types": "./recipes/*.d.ts", "default": "./recipes/*.js" },
-            "./frame": { "types": "./frame.d.ts", "default": "./frame.js" },
-            "./package.json": "./package.json"
-        }
-    })
-}
-
-fn text(value: &Value) -> String {
-    format!("{value:#}\n")
 }
 
 /// Returns a module of JavaScript whose default is a text.
@@ -82,8 +53,9 @@ fn constant(source: &str) -> String {
     format!("export default {};\n", Value::from(source))
 }
 
-/// Returns a module of JavaScript with a recipe, its entry points, overrides, bindings and layouts.
-fn recipe_module(source: &str, ir: &Module) -> String {
+/// Returns a module of JavaScript with a recipe, its entry points, overrides, bindings and layouts, and its types, in
+/// which the layouts are literal.
+fn recipe_module(source: &str, ir: &Module) -> [String; 2] {
     let stages: BTreeMap<&str, &str> = ir
         .entry_points
         .iter()
@@ -124,21 +96,22 @@ fn recipe_module(source: &str, ir: &Module) -> String {
         .map(|(name, layout)| {
             let fields = layout.fields.iter().map(|field| {
                 let offset = field.offsets.first().copied().unwrap_or_default();
-                (field.name.clone(), json!({ "type": field.ty, "offset": offset }))
+                json!({ "name": field.name, "type": field.ty, "offset": offset })
             });
-            let fields: serde_json::Map<String, Value> = fields.collect();
+            let fields: Vec<Value> = fields.collect();
             (name, json!({ "size": layout.size, "fields": fields }))
         })
         .collect();
     let bindings: Vec<Value> = bindings.into_iter().map(|(_, _, row)| row).collect();
-    format!(
-        "export const wgsl = {};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {:#};\n",
+    let layouts = json!(layouts);
+    let code = format!(
+        "export const wgsl = {};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {layouts:#};\n",
         Value::from(source),
         json!(stages),
         json!(overrides),
         json!(bindings),
-        json!(layouts)
-    )
+    );
+    [code, format!("{RECIPE_TYPES}export const layouts: {layouts:#};\n")]
 }
 
 const TEXT_TYPES: &str = "declare const text: string;\nexport default text;\n";
@@ -159,15 +132,29 @@ export interface Binding {
   struct: string | null;
 }
 export const bindings: Binding[];
-export interface Layout {
-  /** Bytes of one struct. */
-  size: number;
-  /** Type in WGSL and offset in bytes; a field of an inner struct is named `outer.inner`. */
-  fields: Record<string, { type: string; offset: number }>;
-}
-/** Layouts of the structs in `bindings` that hold 32-bit numbers alone. */
-export const layouts: Record<string, Layout>;
+/** Structs in `bindings` of 32-bit numbers alone: bytes of one, and its fields in order, each with its type in WGSL
+ *  and its offset in bytes. A field of an inner struct is named `outer.inner`. */
 ";
+
+const PACKAGE: &str = r#"{
+  "name": "NAME",
+  "version": "VERSION",
+  "description": "WGSL and GLSL ES for gems and translucent materials, tested against mirrors and oracles",
+  "license": "(MIT-0 OR Apache-2.0)",
+  "type": "module",
+  "sideEffects": false,
+  "keywords": ["wgsl", "webgpu", "webgl", "glsl", "shader", "refraction", "dispersion", "translucency"],
+  "exports": {
+    "./wgsl": { "types": "./wgsl/index.d.ts", "default": "./wgsl/index.js" },
+    "./wgsl/*": { "types": "./wgsl/*.d.ts", "default": "./wgsl/*.js" },
+    "./glsl-es": { "types": "./glsl-es/index.d.ts", "default": "./glsl-es/index.js" },
+    "./glsl-es/*": { "types": "./glsl-es/*.d.ts", "default": "./glsl-es/*.js" },
+    "./recipes/*": { "types": "./recipes/*.d.ts", "default": "./recipes/*.js" },
+    "./frame": { "types": "./frame.d.ts", "default": "./frame.js" },
+    "./package.json": "./package.json"
+  }
+}
+"#;
 
 const FRAME_TYPES: &str = "\
 export interface Picture {
@@ -179,7 +166,7 @@ export interface Pass {
   kind: 'render' | 'compute' | 'clear' | 'copy' | 'read';
   name?: string;
 }
-/** Runs what `cook frame` writes. */
+/** Runs what `cook frame` writes. `GPUDevice` is a type of @webgpu/types. */
 export class Frame {
   /** Makes everything that the frame in a folder needs; nothing is drawn yet. */
   static load(device: GPUDevice, folder: string): Promise<Frame>;

@@ -206,6 +206,11 @@ fn a_copied_function_holds_what_it_needs() {
     let naive = succeeds(folder().path(), &["copy", "refraction::refract_naive"]).stdout;
     dispatch::parse(&naive, "naive.wgsl").unwrap_or_else(|error| panic!("{error}"));
     assert!(naive.contains("fn refraction_refract_naive("), "{naive}");
+    // Of a recipe too.
+    let entry = succeeds(folder().path(), &["copy", "gem::gem_vertex", "--effects", "proxy_geometry"]).stdout;
+    let (ir, _) = dispatch::parse(&entry, "gem_vertex.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(ir.entry_points.len(), 1);
+    assert!(!entry.contains("// requires:") && !entry.contains("// screen: "), "{entry}");
 }
 
 #[test]

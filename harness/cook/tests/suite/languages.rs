@@ -228,7 +228,8 @@ fn recipes_compile_in_every_language_that_can_say_them() {
     let fault = |(at, shown): (usize, &Shown)| match &shown.text {
         // GLSL ES 3.00 has neither; nothing else is missing anywhere.
         Err(TranslateError::Lacks { why, .. })
-            if shown.language == Language::GlslEs && ["compute shaders", "storage buffers"].contains(&why.as_str()) =>
+            if shown.language == Language::GlslEs
+                && (why == "compute shaders" || why.starts_with("storage buffers (`")) =>
         {
             None
         }
@@ -252,32 +253,118 @@ fn recipes_compile_in_every_language_that_can_say_them() {
     assert!(shown.len() > 200 && in_es > 10, "{} of {}", in_es, shown.len());
 }
 
-/// The first comment names each binding, with its place, and every override with its value.
+/// The first comment's table of bindings and overrides is what the code says.
 #[test]
 fn a_recipe_tells_where_its_bindings_are() {
+    let mut rows = 0;
     for shown in shown() {
         let Ok(text) = &shown.text else { continue };
-        let code = |line: &&str| !line.trim_start().starts_with("//");
-        let is_named = |name: &str| {
-            text.lines().filter(code).any(|line| words(line).any(|word| word.trim_end_matches('_') == name))
-        };
+        let code: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
         let comment: Vec<&str> =
             text.lines().filter(|line| !line.starts_with('#')).take_while(|line| line.starts_with("//")).collect();
-        let places = comment.iter().filter_map(|line| line.strip_prefix("//   @group("));
-        for place in places {
+        let has = |name: &str, place: &str| {
+            let is_name = |word: &str| word.trim_end_matches('_') == name || word.strip_suffix("_block") == Some(name);
+            let is_it = |line: &&str| line.contains(place) && words(line).any(is_name);
+            code.iter().any(is_it)
+        };
+        for place in comment.iter().filter_map(|line| line.strip_prefix("//   @group(")) {
             let (declared, at) = place.rsplit_once(": ").expect("a place");
             let name = declared.split(": ").next().and_then(|text| text.rsplit(' ').next()).expect("a name");
-            // GLSL has no samplers of their own.
-            let is_sampler = declared.contains("sampler") && shown.language.is_glsl();
-            assert!(is_sampler || is_named(name), "{}: {declared}", shown.place);
-            let register = at.split([',', '(']).nth(1).unwrap_or_default();
-            let is_there =
-                shown.language != Language::Hlsl || text.lines().filter(code).any(|line| line.contains(register));
+            let is_there = match shown.language {
+                Language::Hlsl => {
+                    // Space 0 goes without saying.
+                    let bare = at.replace(", space0)", ")");
+                    has(name, &format!(": {at}")) || has(name, &format!(": {bare}"))
+                }
+                Language::Msl => has(name, at),
+                // GLSL has no samplers of their own.
+                _ if declared.contains("sampler") => true,
+                Language::Glsl => has(name, &at[at.find("binding = ").expect("a number")..]),
+                Language::GlslEs => has(name, "uniform"),
+            };
             assert!(is_there, "{}: {declared} at {at}", shown.place);
+            rows += 1;
+        }
+        let count = match shown.language {
+            Language::Hlsl => code.iter().filter(|line| line.contains(": register(")).count(),
+            Language::Glsl => code.iter().filter(|line| line.contains("binding = ")).count(),
+            _ => 0,
+        };
+        let told =
+            comment.iter().filter(|line| line.starts_with("//   @group(") && !line.contains("with its textures"));
+        assert!(count <= told.count(), "{}: a binding is not told", shown.place);
+        for line in comment.iter().skip_while(|line| !line.contains("by an override")).skip(1) {
+            let Some((name, value)) = line.strip_prefix("//   ").and_then(|line| line.split_once(" = ")) else { break };
+            let value = value.trim_end_matches(['u', 'i', 'f']);
+            assert!(!has(name, "= ") || has(name, &format!("= {value}")), "{}: {line}", shown.place);
         }
         // No vertex is flipped, and no depth stretched.
         assert!(!text.contains("gl_Position.yz ="), "{}", shown.place);
     }
+    assert!(rows > 500, "{rows}");
+}
+
+/// What is said of bindings and entry points in the WGSL is said in each language.
+#[test]
+fn a_recipe_keeps_the_comments_of_its_bindings_and_entry_points() {
+    for shown in shown() {
+        let Ok(text) = &shown.text else { continue };
+        let recipe =
+            RECIPES.iter().find(|recipe| shown.place.starts_with(&format!("{}::", recipe.name))).expect("a recipe");
+        let source = recipe.compose();
+        let lines: Vec<&str> = source.lines().collect();
+        for declaration in declarations(&lines) {
+            let is_binding = declaration.lines.iter().any(|line| line.starts_with("@group("));
+            let Some(name) = declaration.name.filter(|name| is_binding || *name == shown.entry) else { continue };
+            let is_told = |line: &str| line.starts_with("//   @group(") && line.contains(&format!(" {name}: "));
+            let is_used = name == shown.entry || text.lines().any(is_told);
+            let is_sampler = declaration.lines.iter().any(|line| line.contains(": sampler"));
+            if !is_used || (is_sampler && shown.language.is_glsl()) {
+                continue;
+            }
+            for line in declaration.comment() {
+                let told = line.trim_start_matches("//").trim_start();
+                assert!(text.contains(told), "{}: `{name}`: {line}", shown.place);
+            }
+        }
+    }
+}
+
+/// A vertex and a fragment shader that are used together agree about bindings and what goes between them.
+#[test]
+fn stages_of_a_recipe_link() {
+    if !has_tools("stages together") {
+        return;
+    }
+    let folder = folder();
+    let mut linked = 0;
+    for recipe in RECIPES {
+        let source = recipe.compose();
+        let (ir, _) = dispatch::parse(&source, recipe.name).expect("valid WGSL");
+        let of = |stage| ir.entry_points.iter().filter(move |point| point.stage == stage);
+        for (vertex, fragment) in
+            of(ShaderStage::Vertex).flat_map(|vertex| of(ShaderStage::Fragment).map(move |it| (vertex, it)))
+        {
+            let mut command = Command::new(TOOLS[0]);
+            command.args(["-G", "-l", "--auto-map-locations", "-o"]).arg(folder.path().join("linked.spv"));
+            for (point, extension) in [(vertex, "vert"), (fragment, "frag")] {
+                let path = folder.path().join(format!("{}.{}.{extension}", recipe.name, point.name));
+                let text = shader(&source, recipe.name, Language::Glsl, Some(&point.name)).expect("translated");
+                std::fs::write(&path, text).expect("a file");
+                command.arg(path);
+            }
+            assert_eq!(run(&mut command), Ok(()), "{}", recipe.name);
+            linked += 1;
+        }
+        // HLSL holds all entry points, as it is handed out.
+        let whole = shader(&source, recipe.name, Language::Hlsl, None).expect("translated");
+        for point in &ir.entry_points {
+            let entry: &'static str = Box::leak(point.name.clone().into_boxed_str());
+            let found = compiled(&whole, Language::Hlsl, As::Shader(point.stage, entry), folder.path(), entry);
+            assert_eq!(found, Ok(()), "{}::{entry}", recipe.name);
+        }
+    }
+    assert!(linked > 15, "{linked}");
 }
 
 #[test]
