@@ -32,6 +32,13 @@ pub enum DistError {
     },
 }
 
+/// The manifest of the WESL package.
+const WESL: &str = "\
+[package]
+edition = \"unstable_2025\"
+root = \"./shaders\"
+";
+
 /// What was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
@@ -87,8 +94,11 @@ pub const fn folder_of(language: Language) -> &'static str {
 /// Returns every text with its path.
 fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
     let mut files = Vec::new();
+    files.push(("wesl/wesl.toml".to_owned(), WESL.as_bytes().to_vec()));
     for module in modules() {
-        files.push((format!("wgsl/{}.wgsl", module.name), module.source.as_bytes().to_vec()));
+        for path in [format!("wgsl/{}.wgsl", module.name), format!("wesl/shaders/{}.wesl", module.name)] {
+            files.push((path, module.source.as_bytes().to_vec()));
+        }
         for language in Language::ALL {
             let path = format!("{}/{}.{}", folder_of(language), module.name, language.extension());
             files.push((path, library(module.source, module.name, language)?.into_bytes()));
@@ -147,6 +157,7 @@ what was set. Clip space is WebGPU's everywhere: y up, depth from 0 to 1.
 - `msl`: the Metal Shading Language 2.0
 - `npm`: a package with the WGSL and the GLSL ES as strings, recipes with their bindings and layouts, and what
   runs a frame; `npm pack` makes it
+- `wesl`: a package of the modules for WESL: `import lapidary::refraction::refraction_refract;`
 - `spirv`: recipes alone; sets and bindings are WGSL's groups and bindings
 
 "

@@ -374,7 +374,9 @@ fn dist_writes_every_text_and_the_same_again() {
     let read = |name: &str| std::fs::read(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let written = dist::write(&out).expect("written");
     for module in modules() {
-        assert_eq!(read(&format!("wgsl/{}.wgsl", module.name)), module.source.as_bytes());
+        for path in [format!("wgsl/{}.wgsl", module.name), format!("wesl/shaders/{}.wesl", module.name)] {
+            assert_eq!(read(&path), module.source.as_bytes());
+        }
         for language in Language::ALL {
             let name = format!("{}/{}.{}", dist::folder_of(language), module.name, language.extension());
             assert_eq!(read(&name), of_module(module, language).as_bytes(), "{name}");
