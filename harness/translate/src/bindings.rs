@@ -2,13 +2,13 @@
 
 use crate::{Language, Setting};
 use naga::back::{hlsl, msl};
-use naga::{AddressSpace, GlobalVariable, ImageClass, Module, StorageAccess, TypeInner};
+use naga::{AddressSpace, GlobalVariable, ImageClass, Module, ResourceBinding, StorageAccess, TypeInner};
 use std::collections::BTreeMap;
 
 /// A binding's place in a language.
 pub struct Place {
-    /// Group and binding in WGSL.
-    pub wgsl: (u32, u32),
+    /// Group and binding in WGSL; `None` for what it does not have.
+    pub wgsl: Option<ResourceBinding>,
     /// Name in WGSL, the same in the language.
     pub name: String,
     /// Where the language finds it.
@@ -102,7 +102,7 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
             },
         };
         if used.global_variables.iter().any(|(_, left)| left.binding == variable.binding) {
-            places.push(Place { wgsl: (at.group, at.binding), name, place });
+            places.push(Place { wgsl: Some(at), name, place });
         }
     }
     if language == Language::Msl {
@@ -114,7 +114,7 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
         }
         if let (Some(slot), false) = (sizes, sized(used).is_empty()) {
             let place = format!("[[buffer({slot})]]: the sizes in bytes of {}", sized(used).join(", "));
-            places.push(Place { wgsl: (u32::MAX, u32::MAX), name: "_buffer_sizes".to_owned(), place });
+            places.push(Place { wgsl: None, name: "_buffer_sizes".to_owned(), place });
         }
     }
     places

@@ -3,7 +3,8 @@
 use crate::declarations::{self, Declaration, declarations, of_function, words};
 use crate::hlsl;
 use crate::items::{Item, Kind, items};
-use crate::names::{prefix_helpers, take_numbers_off};
+use crate::names::{camel, prefix_helpers, take_numbers_off};
+use crate::shader::with_defaults;
 use crate::{Language, Setting, TranslateError, written};
 use naga::ShaderStage;
 use naga::back::glsl;
@@ -26,8 +27,7 @@ pub fn library(source: &str, name: &str, language: Language) -> Result<String, T
     if language == Language::Hlsl {
         hlsl::list_constants(&mut items);
     }
-    let camel: String = name.split('_').map(capital).collect();
-    prefix_helpers(&mut items, &own, &format!("{name}_"), &camel);
+    prefix_helpers(&mut items, &own, &format!("{name}_"), &camel(name));
     take_numbers_off(&mut items);
     let header = declarations.first().filter(|first| first.name.is_none()).map_or(&[][..], Declaration::comment);
     let mut text: String = header.iter().flat_map(|line| [line, "\n"]).collect();
@@ -105,10 +105,8 @@ fn translated(source: &str, language: Language) -> Result<String, String> {
         Some(_) => format!("{source}\n{stage} fn {entry}() {{}}\n"),
         None => source.to_owned(),
     };
-    let (module, info) = lapidary_specialise::parse(&whole, "the text").map_err(|error| error.to_string())?;
-    let constants = naga::back::PipelineConstants::default();
-    let (module, info) = naga::back::pipeline_constants::process_overrides(&module, &info, None, &constants)
-        .map_err(|error| error.to_string())?;
+    let (module, _) = lapidary_specialise::parse(&whole, "the text").map_err(|error| error.to_string())?;
+    let (module, info) = with_defaults(&module)?;
     let of_stage = if language == Language::Glsl { ShaderStage::Compute } else { ShaderStage::Fragment };
     let entry = language.glsl_version().map(|_| (entry.to_owned(), of_stage));
     let setting = Setting::strict(entry, glsl::WriterFlags::INCLUDE_UNUSED_ITEMS);
@@ -163,8 +161,4 @@ pub(crate) fn other_names(items: &[Item], source: &str) -> String {
     }
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     format!("// With an underscore here, as words of the language or for a digit at the end: {}.\n", names.join(", "))
-}
-
-fn capital(word: &str) -> String {
-    word.chars().next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + &word[1..])
 }

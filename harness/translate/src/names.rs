@@ -25,6 +25,12 @@ fn declared(text: &str) -> HashSet<&str> {
     names.collect()
 }
 
+/// Returns what stands before the underscore and the number that a writer adds; `None` if there is no number.
+fn without_number(name: &str) -> Option<&str> {
+    let (base, number) = name.rsplit_once('_')?;
+    (!number.is_empty() && number.chars().all(|c| c.is_ascii_digit())).then_some(base)
+}
+
 /// Gives a writer's names of bindings and variables back the shader's own, in `(writer's, own)`. What a function
 /// calls so itself gets another name where both meet.
 pub fn rename_globals(items: &mut [Item], renames: &[(String, String)]) {
@@ -59,8 +65,7 @@ pub fn renamed(text: &str, renamed: &HashMap<String, String>) -> String {
 pub fn restore_globals(items: &mut [Item], own: &HashSet<&str>) {
     let mut numbered = Vec::new();
     for item in items.iter().filter(|item| item.kind == Kind::Variable && !own.contains(item.name.as_str())) {
-        let Some((base, number)) = item.name.rsplit_once('_') else { continue };
-        if own.contains(base) && number.chars().all(|c| c.is_ascii_digit()) {
+        if let Some(base) = without_number(&item.name).filter(|base| own.contains(base)) {
             numbered.push((item.name.clone(), base.to_owned()));
         }
     }
@@ -80,10 +85,9 @@ pub fn take_numbers_off(items: &mut [Item]) {
         let names: HashSet<&str> = used(&text);
         let mut wanted: HashMap<&str, Vec<&str>> = HashMap::new();
         for name in &names {
-            let Some((base, number)) = name.rsplit_once('_') else { continue };
-            let is_number = !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
+            let Some(base) = without_number(name) else { continue };
             let is_own = globals.contains(base) || globals.contains(*name);
-            if is_number && bare.contains(base) && !names.contains(base) && !is_own {
+            if bare.contains(base) && !names.contains(base) && !is_own {
                 wanted.entry(base).or_default().push(name);
             }
         }
@@ -100,7 +104,7 @@ pub fn take_numbers_off(items: &mut [Item]) {
 /// Gives what a writer has added the prefixes of the text's own names, so that two translated texts
 /// do not clash: `functions` for functions and variables, `types` for types.
 ///
-/// `own` are the names that the text declares itself. Returns the new names with what they make.
+/// `own` are the names that the text declares itself.
 pub fn prefix_helpers(items: &mut [Item], own: &HashSet<&str>, functions: &str, types: &str) {
     let mut taken: HashSet<String> = items.iter().map(|item| item.name.clone()).collect();
     let mut renames = HashMap::new();
@@ -141,7 +145,8 @@ fn array_of(text: &str) -> Option<String> {
     Some(format!("{}_array{}", element.rsplit("::").next()?, length.split(']').next()?))
 }
 
-fn camel(name: &str) -> String {
+/// Returns a name of words with underscores as one of words with capitals.
+pub fn camel(name: &str) -> String {
     let word =
         |word: &str| word.chars().next().map_or(String::new(), |c| c.to_uppercase().collect::<String>() + &word[1..]);
     name.split('_').map(word).collect()

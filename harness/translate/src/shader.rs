@@ -32,7 +32,9 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     if let Some((entry, _)) = &entry {
         module.entry_points.retain(|point| point.name == *entry);
     }
-    let module = with_defaults(&module).map_err(|why| lacks("the shader", &why))?;
+    let (mut module, _) = with_defaults(&module).map_err(|why| lacks("the shader", &why))?;
+    // What the entry points do not need goes.
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
     let info = lapidary_specialise::validate(&module).map_err(|error| lacks("the shader", &error.to_string()))?;
     if let (Language::GlslEs, Some((entry, stage))) = (language, &entry) {
         if *stage == ShaderStage::Compute {
@@ -81,16 +83,17 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     Ok(text)
 }
 
-/// Writes SPIR-V, little endian. Sets and bindings are WGSL's groups and bindings, and clip space is
-/// WebGPU's.
+/// Writes SPIR-V, little endian, with the overrides' default values. Sets and bindings are WGSL's groups and
+/// bindings, and clip space is WebGPU's.
 ///
 /// # Errors
 /// Returns naga's message if SPIR-V lacks something.
-pub fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
+pub fn spirv(module: &Module) -> Result<Vec<u8>, String> {
+    let (module, info) = with_defaults(module)?;
     let mut options = spv::Options::default();
     // No flip of clip space: a viewport of negative height does that.
     options.flags.remove(spv::WriterFlags::ADJUST_COORDINATE_SPACE);
-    let words = spv::write_vec(module, info, &options, None).map_err(|error| error.to_string())?;
+    let words = spv::write_vec(&module, &info, &options, None).map_err(|error| error.to_string())?;
     Ok(words.iter().flat_map(|word| word.to_le_bytes()).collect())
 }
 
@@ -119,15 +122,13 @@ fn entry_of(
     }
 }
 
-/// Returns the module with its overrides' defaults as constants, without what no entry point needs.
-fn with_defaults(module: &Module) -> Result<Module, String> {
+/// Returns the module with its overrides' defaults as constants: naga's writers know no overrides.
+pub(crate) fn with_defaults(module: &Module) -> Result<(Module, ModuleInfo), String> {
     let info = lapidary_specialise::validate(module).map_err(|error| error.to_string())?;
     let constants = naga::back::PipelineConstants::default();
-    let (module, _) = naga::back::pipeline_constants::process_overrides(module, &info, None, &constants)
+    let (module, info) = naga::back::pipeline_constants::process_overrides(module, &info, None, &constants)
         .map_err(|error| error.to_string())?;
-    let mut module = module.into_owned();
-    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    Ok(module)
+    Ok((module.into_owned(), info.into_owned()))
 }
 
 /// Returns the source with its depth textures as textures of floats; `None` if it has none, or if they are
@@ -196,10 +197,7 @@ fn header(declarations: &[Declaration<'_>], items: &[Item]) -> String {
         }
     }
     let Some(((own, _), others)) = headers.split_last() else { return String::new() };
-    // What a recipe is made of is said below.
-    let made_of = ["// requires:", "// parts:", "// compares:"];
-    let is_told = |line: &&&str| !made_of.iter().any(|start| line.starts_with(start));
-    let mut text: String = own.comment().iter().filter(is_told).flat_map(|line| [line, "\n"]).collect();
+    let mut text: String = own.comment().iter().flat_map(|line| [line, "\n"]).collect();
     let others: Vec<&Declaration<'_>> =
         others.iter().filter(|(_, has_any)| *has_any).map(|(other, _)| *other).collect();
     if !others.is_empty() {
@@ -208,7 +206,7 @@ fn header(declarations: &[Declaration<'_>], items: &[Item]) -> String {
     for other in others {
         // Name and purpose, licence, and source with its further lines.
         let lines = other.comment().iter().take_while(|line| **line != "//");
-        let kept = lines.filter(is_told).filter(|line| !line.starts_with("// Version:"));
+        let kept = lines.filter(|line| !line.starts_with("// Version:"));
         text.extend(kept.enumerate().map(|(at, line)| {
             let line = line.trim_start_matches("//").trim_start();
             format!("// {} {line}\n", if at == 0 { "-" } else { " " })
@@ -270,10 +268,7 @@ fn table(places: &[Place], declarations: &[Declaration<'_>], language: Language)
         let lines = declaration.map_or(&[][..], |declaration| &declaration.lines);
         let code = lines.iter().find_map(|line| Some(&line[line.find(" var")? + 1..]));
         let code = code.map_or("", |code| without_comment(code).trim_end().trim_end_matches(';'));
-        let at = match place.wgsl {
-            (u32::MAX, _) => String::new(),
-            (group, binding) => format!("@group({group}) @binding({binding}) "),
-        };
+        let at = place.wgsl.map_or(String::new(), |at| format!("@group({}) @binding({}) ", at.group, at.binding));
         // In Metal a binding is an argument, without a place for its comment.
         let comment = match (language, declaration) {
             (Language::Msl, Some(declaration)) => declaration.comment(),

@@ -156,8 +156,7 @@ fn of_one_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8
         let kernel = KernelModule::reflect(module.whole, module.name, function)?;
         let mut ir = kernel.module;
         naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
-        let info = lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?;
-        return spirv(&ir, &info).map_err(Failure);
+        return spirv(&ir).map_err(Failure);
     }
     // The module's own functions stand in `whole` as well, below the naive forms' own comment.
     let text = of_function(module.whole, function).unwrap_or_else(|| module.whole.to_owned());
@@ -169,7 +168,7 @@ fn of_one_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8
 }
 
 fn of_recipe(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
-    let (mut ir, info) = dispatch::parse(source, name)?;
+    let (mut ir, _) = dispatch::parse(source, name)?;
     if let Some(entry) = entry
         && !ir.entry_points.iter().any(|point| point.name == entry)
     {
@@ -187,15 +186,7 @@ fn of_recipe(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
     if let Some(entry) = entry {
         ir.entry_points.retain(|point| point.name == entry);
     }
-    // SPIR-V's writer knows no overrides: each is replaced by its default here.
-    let info = match entry {
-        Some(_) => lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?,
-        None => info,
-    };
-    let constants = naga::back::PipelineConstants::default();
-    let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, None, &constants)
-        .map_err(|error| Failure(error.to_string()))?;
-    spirv(&ir, &info).map_err(Failure)
+    spirv(&ir).map_err(Failure)
 }
 
 /// Returns the recipe to paste, without marks. If effects are named, the lines of all others are cut,

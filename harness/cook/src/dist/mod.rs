@@ -108,7 +108,7 @@ fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
         let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
         let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
         files.push((format!("wgsl/recipes/{}.wgsl", recipe.name), source.as_bytes().to_vec()));
-        let (ir, info) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
+        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
         for language in Language::ALL {
             let folder = folder_of(language);
             if !language.is_glsl() {
@@ -133,10 +133,7 @@ fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
                 }
             }
         }
-        let constants = naga::back::PipelineConstants::default();
-        let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, None, &constants)
-            .map_err(|error| failed(error.to_string()))?;
-        files.push((format!("spirv/recipes/{}.spv", recipe.name), spirv(&ir, &info).map_err(failed)?));
+        files.push((format!("spirv/recipes/{}.spv", recipe.name), spirv(&ir).map_err(failed)?));
     }
     Ok(files)
 }
