@@ -64,7 +64,9 @@ pub fn reached(declarations: &[Declaration<'_>], is_root: impl Fn(&Declaration<'
     let mut taken: Vec<bool> = declarations.iter().map(is_root).collect();
     let mut left: Vec<usize> = (0..declarations.len()).filter(|at| taken[*at]).collect();
     while let Some(at) = left.pop() {
-        names.extend(declarations[at].lines.iter().flat_map(|line| words(without_comment(line))));
+        let own = locals(&declarations[at]);
+        let used = declarations[at].lines.iter().flat_map(|line| used(without_comment(line)));
+        names.extend(used.filter(|word| !own.contains(word)));
         for (other, declaration) in declarations.iter().enumerate() {
             if !taken[other] && declaration.name.is_some_and(|name| names.contains(name)) {
                 taken[other] = true;
@@ -73,6 +75,38 @@ pub fn reached(declarations: &[Declaration<'_>], is_root: impl Fn(&Declaration<'
         }
     }
     taken
+}
+
+/// Returns the words of a line but those after a `.`, which name members.
+fn used(code: &str) -> impl Iterator<Item = &str> {
+    let is_word = |character: char| character.is_ascii_alphanumeric() || character == '_';
+    let paths = code.split(move |character: char| !is_word(character) && character != '.');
+    paths.filter_map(|path| path.split('.').next()).filter(|word| !word.is_empty())
+}
+
+/// Returns the names of a function's parameters and variables, which hide what the module calls so, and
+/// those of a struct's members.
+fn locals<'a>(declaration: &Declaration<'a>) -> HashSet<&'a str> {
+    let code: Vec<&str> = declaration.lines.iter().map(|line| without_comment(line)).collect();
+    let is_head = |line: &&str| ["fn ", "struct "].iter().any(|start| line.starts_with(start));
+    let Some(first) = code.iter().position(is_head) else { return HashSet::new() };
+    let mut locals = HashSet::new();
+    let is_struct = code[first].starts_with("struct ");
+    let mut is_head = true;
+    for line in &code[first..] {
+        if is_head {
+            // `name: type`, but for attributes such as `@location(0)`.
+            locals.extend(line.split(':').rev().skip(1).filter_map(|before| words(before).last()));
+        }
+        is_head &= is_struct || !line.trim_end().ends_with('{');
+        let mut words = words(line);
+        while let Some(word) = words.next() {
+            if ["let", "var", "const"].contains(&word) {
+                locals.extend(words.next());
+            }
+        }
+    }
+    locals
 }
 
 /// Returns the text of those declarations that are needed. A comment with a licence heads what follows up to
@@ -100,15 +134,26 @@ pub fn text_of(declarations: &[Declaration<'_>], needed: &[bool]) -> String {
     text
 }
 
-/// Returns the text with one function or entry point and what it needs; `None` if it has no such
-/// function. The line of the version goes: it is that of the whole text.
+/// Returns the names of a text's functions, entry points among them.
 #[must_use]
-pub fn of_function(source: &str, function: &str) -> Option<String> {
+pub fn functions(source: &str) -> Vec<&str> {
+    source.lines().filter_map(|line| words(line.strip_prefix("fn ")?).next()).collect()
+}
+
+/// Returns the text with these functions and entry points and what they need; `None` if it lacks one of
+/// them. The line of the version goes: it is that of the whole text.
+#[must_use]
+pub fn of_functions(source: &str, wanted: &[&str]) -> Option<String> {
+    let known = functions(source);
+    if !wanted.iter().all(|function| known.contains(function)) {
+        return None;
+    }
     let lines: Vec<&str> = source.lines().filter(|line| !line.starts_with("// Version:")).collect();
     let declarations = declarations(&lines);
-    let is_function = |line: &&str| line.strip_prefix("fn ").is_some_and(|rest| words(rest).next() == Some(function));
-    let is_root = |declaration: &Declaration<'_>| declaration.lines.iter().any(is_function);
-    declarations.iter().find(|declaration| is_root(declaration))?;
+    let is_root = |declaration: &Declaration<'_>| {
+        let mut named = declaration.lines.iter().filter_map(|line| words(line.strip_prefix("fn ")?).next());
+        named.any(|name| wanted.contains(&name))
+    };
     let needed = reached(&declarations, is_root);
     Some(text_of(&declarations, &needed).trim_end().to_owned() + "\n")
 }
@@ -188,8 +233,15 @@ fn main() {
     #[test]
     fn a_function_comes_with_what_it_needs() {
         let expected = "// A module.\n// Licence.\n\n// Half.\nconst HALF: f32 = 0.5f;\n\n// Halves.\nfn halved(\n    x: f32,\n) -> f32 {\n    return HALF * x;\n}\n";
-        assert_eq!(of_function(TEXT, "halved").as_deref(), Some(expected));
-        assert!(of_function(TEXT, "hit").is_some_and(|text| text.contains("struct Hit") && !text.contains("HALF")));
-        assert_eq!(of_function(TEXT, "Hit"), None);
+        assert_eq!(of_functions(TEXT, &["halved"]).as_deref(), Some(expected));
+        let hit = of_functions(TEXT, &["hit"]).expect("a function");
+        assert!(hit.contains("struct Hit") && !hit.contains("HALF"), "{hit}");
+        let both = of_functions(TEXT, &["hit", "halved"]).expect("two functions");
+        assert!(both.contains("struct Hit") && both.contains("HALF") && !both.contains("main"), "{both}");
+        assert_eq!(of_functions(TEXT, &["halved", "Hit"]), None);
+        // A local hides what the module calls so.
+        let hiding = format!("{TEXT}\nfn hiding(hit: f32) -> f32 {{\n    let HALF = hit;\n    return HALF;\n}}\n");
+        let text = of_functions(&hiding, &["hiding"]).expect("a function");
+        assert!(!text.contains("const HALF") && !text.contains("fn hit("), "{text}");
     }
 }

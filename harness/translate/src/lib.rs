@@ -12,6 +12,7 @@ struct Readme;
 
 mod bindings;
 pub mod declarations;
+pub mod fitted;
 mod hlsl;
 mod items;
 mod library;
@@ -107,6 +108,19 @@ pub enum TranslateError {
         /// The ones that exist.
         found: String,
     },
+    /// The text declares nothing of this name.
+    #[error("no {what} `{name}`; there are {}", known.join(", "))]
+    NoSuch {
+        /// "override" or "binding".
+        what: &'static str,
+        /// The name that was asked for.
+        name: String,
+        /// The ones that exist.
+        known: Vec<String>,
+    },
+    /// A value does not fit its override, or a binding cannot be private.
+    #[error("{0}")]
+    Fit(String),
     /// The language lacks something.
     #[error("{language} cannot say what `{what}` needs: {why}")]
     Lacks {

@@ -1,6 +1,6 @@
 //! A text without entry points.
 
-use crate::declarations::{self, Declaration, declarations, of_function, words};
+use crate::declarations::{self, Declaration, declarations, of_functions, words};
 use crate::hlsl;
 use crate::items::{Item, Kind, items};
 use crate::names::{camel, prefix_helpers, take_numbers_off};
@@ -129,7 +129,7 @@ pub(crate) fn culprit(source: &str, language: Language, why: String) -> Translat
     let lines: Vec<&str> = source.lines().collect();
     let found =
         declarations::declarations(&lines).into_iter().filter_map(|declaration| declaration.name).find_map(|name| {
-            let alone = of_function(source, name)?;
+            let alone = of_functions(source, &[name])?;
             translated(&alone, language).err().map(|why| (name.to_owned(), why))
         });
     let (what, why) = found.unwrap_or_else(|| ("the text".to_owned(), why));

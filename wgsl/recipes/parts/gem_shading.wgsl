@@ -426,23 +426,23 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
 // green's as red's is, so that blue has a ray, and red is tracked from green's. As long as both rays
 // meet the same facets, one search finds them.
 fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
-    let indices = material.channel_indices;
-    let offset = indices.r - indices.g;
+    let channels = material.channel_indices;
+    let offset = channels.r - channels.g;
     var place = gem_enter(input);
     var place_blue = place;
-    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, indices.g).direction);
-    var blue = gem_ray(input.position, refraction_refract(direction, input.face_normal, indices.b).direction);
+    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, channels.g).direction);
+    var blue = gem_ray(input.position, refraction_refract(direction, input.face_normal, channels.b).direction);
     ray.throughput = vec3f(1.0f, 1.0f, 0.0f);
     blue.throughput = vec3f(0.0f, 0.0f, 1.0f);
-    var gradient = dispersion_enter(direction, input.face_normal, indices.g);
+    var gradient = dispersion_enter(direction, input.face_normal, channels.g);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
         if ((LIMIT_THROUGHPUT || END_AT_FIRST_EXIT) && !ray.followed && !blue.followed) {
             break;
         }
         let hits = gem_hit_both(&place, ray, &place_blue, blue);
         if (gem_arrive(&ray, hits.first)) {
-            let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, indices.r);
-            let green = gem_exit(ray.direction, hits.first.normal, indices.g);
+            let red = gem_exit(dispersion_direction(ray.direction, gradient, offset), hits.first.normal, channels.r);
+            let green = gem_exit(ray.direction, hits.first.normal, channels.g);
             if (red.share > 0.0f || green.share > 0.0f) {
                 let lead = gem_lead(red, green, green);
                 let outside = gem_surroundings_red_green(hits.first.point, lead, red.direction, green.direction);
@@ -452,7 +452,7 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
             gradient = dispersion_reflect(gradient, hits.first.normal);
         }
         if (gem_arrive(&blue, hits.second)) {
-            let exit = gem_exit(blue.direction, hits.second.normal, indices.b);
+            let exit = gem_exit(blue.direction, hits.second.normal, channels.b);
             if (exit.share > 0.0f) {
                 gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share), gem_surroundings_blue(hits.second.point, exit.direction));
             }

@@ -6,26 +6,38 @@ use lapidary_cook::cookbook::marks::{self, effect_of, effects, override_of};
 use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
 use lapidary_scene::nearest;
-use lapidary_translate::declarations::of_function;
-use lapidary_translate::{Language, library, shader, spirv};
+use lapidary_translate::declarations::{functions, of_functions};
+use lapidary_translate::fitted::{in_group, with_constants, with_private};
+use lapidary_translate::{Language, TranslateError, library, shader, spirv};
 use lapidary_wgsl::Recipe;
 use std::path::PathBuf;
 
 /// Prints one self-contained file to paste: modules, or a recipe with everything that it requires.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy fresnel --to glsl-es --out fresnel.glsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv"
+    after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy fresnel --to glsl-es --out fresnel.glsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy gem_walk::gem_radiance --effects convex_trace --set BOUNCES=8 --private view --group 3\n  ./cook copy refraction::refract --to spirv --out refract.spv"
 )]
 pub(super) struct Arguments {
-    /// Modules, or one recipe. MODULE::FUNCTION is one function with what it needs; in SPIR-V it is
-    /// wrapped in a compute kernel. RECIPE::ENTRY is one entry point, of which a recipe's GLSL holds
-    /// no more.
+    /// Modules, or one recipe. MODULE::FUNCTION is one function with what it needs, and so is
+    /// RECIPE::FUNCTION, where an entry point is a function too. In SPIR-V a module's function is
+    /// wrapped in a compute kernel. A recipe's GLSL holds one entry point.
     #[arg(required = true, value_name = "MODULE|RECIPE")]
     names: Vec<String>,
     /// Effects of a recipe to keep, switched on; the others are cut out of the text, with the modules
     /// that only they use. If omitted, all are kept, with the recipe's own defaults.
     #[arg(long, value_delimiter = ',', value_name = "a,b")]
     effects: Option<Vec<String>>,
+    /// Overrides of a recipe to write as constants, for hosts that set none.
+    #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Structs that a recipe binds to declare as private variables instead: your own stage sets them,
+    /// from bindings that it has already, before it calls a function.
+    #[arg(long, value_delimiter = ',', value_name = "BINDING")]
+    private: Vec<String>,
+    /// Puts all bindings of a recipe into this group, numbered from 0: a number, or what a preprocessor
+    /// replaces, such as #{MATERIAL_BIND_GROUP}.
+    #[arg(long)]
+    group: Option<String>,
     /// Shading language.
     #[arg(long, value_enum, default_value = "wgsl")]
     to: Target,
@@ -64,25 +76,35 @@ impl Target {
     }
 }
 
+/// A module or recipe, and the functions of it that are wanted; all if none are named.
+struct Wanted<T: 'static> {
+    of: &'static T,
+    functions: Vec<String>,
+}
+
 /// Meaning of the names on the command line.
 enum Selection {
-    Modules(Vec<&'static Module>),
-    Function(&'static Module, String),
-    Recipe(&'static Recipe, Option<String>),
+    Modules(Vec<Wanted<Module>>),
+    Recipe(Wanted<Recipe>),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let selection = select(&arguments.names)?;
-    if arguments.effects.is_some() && !matches!(selection, Selection::Recipe(..)) {
-        return Err(Failure("--effects is for a recipe; a module has none".to_owned()));
-    }
-    let bytes = match &selection {
-        Selection::Modules(modules) => of_modules(modules, arguments.to)?,
-        Selection::Function(module, function) => of_one_function(module, function, arguments.to)?,
-        Selection::Recipe(recipe, entry) => {
-            let source = with_effects(recipe, arguments.effects.as_deref())?;
-            of_recipe(&source, recipe.name, arguments.to, entry.as_deref())?
+    let bytes = match select(&arguments.names)? {
+        Selection::Modules(modules) => {
+            let for_recipes = [
+                ("--effects", arguments.effects.is_some()),
+                ("--set", !arguments.set.is_empty()),
+                ("--private", !arguments.private.is_empty()),
+                ("--group", arguments.group.is_some()),
+            ];
+            if let Some((option, _)) = for_recipes.iter().find(|(_, is_given)| *is_given) {
+                return Err(Failure(format!(
+                    "{option} is for a recipe; a module has no effects, overrides or bindings"
+                )));
+            }
+            of_modules(&modules, arguments.to)?
         }
+        Selection::Recipe(recipe) => of_recipe(&recipe, arguments)?,
     };
     match &arguments.out {
         Some(path) => {
@@ -95,98 +117,159 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn select(names: &[String]) -> Result<Selection, Failure> {
-    let mut modules: Vec<&'static Module> = Vec::new();
+    let mut modules: Vec<Wanted<Module>> = Vec::new();
+    let mut recipes: Vec<Wanted<Recipe>> = Vec::new();
     for name in names {
         let (name, part) = name.split_once("::").map_or((name.as_str(), None), |(name, part)| (name, Some(part)));
-        let alone = names.len() == 1;
         // No recipe has a module's name; `recipes_keep_the_contract` sees to it.
-        let Some(module) = cookbook::module(name) else {
-            let Some(recipe) = lapidary_wgsl::recipe(name) else {
-                let known: Vec<&str> = cookbook::modules()
-                    .iter()
-                    .map(|module| module.name)
-                    .chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name))
-                    .collect();
-                return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
-            };
-            if !alone {
-                return Err(Failure(format!("`{name}` is a recipe, which holds its modules already; copy it alone")));
-            }
-            return Ok(Selection::Recipe(recipe, part.map(str::to_owned)));
-        };
-        if let Some(function) = part {
-            let Some(found) = module.function(function) else {
-                let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
-                return Err(Failure(format!(
-                    "module `{name}` has no function `{function}`{}",
-                    nearest::suggest_function(name, function, &known)
-                )));
-            };
-            if !alone {
-                return Err(Failure(format!("`{name}::{function}` is one function; copy it alone")));
-            }
-            return Ok(Selection::Function(module, found.name.clone()));
-        }
-        if !modules.iter().any(|known| known.name == module.name) {
-            modules.push(module);
+        if let Some(of) = cookbook::module(name) {
+            let known: Vec<&str> = of.functions.iter().map(|function| function.name.as_str()).collect();
+            let function = part.map(|part| match of.function(part) {
+                Some(found) => Ok(found.name.clone()),
+                None => Err(no_function("module", name, part, &known)),
+            });
+            add(&mut modules, of, |of| of.name, function.transpose()?);
+        } else if let Some(of) = lapidary_wgsl::recipe(name) {
+            let source = of.compose();
+            let known = functions(&source);
+            let function = part.map(|part| match known.iter().find(|known| **known == part) {
+                Some(found) => Ok((*found).to_owned()),
+                None => Err(no_function("recipe", name, part, &known)),
+            });
+            add(&mut recipes, of, |of| of.name, function.transpose()?);
+        } else {
+            let modules = cookbook::modules().iter().map(|module| module.name);
+            let known: Vec<&str> = modules.chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name)).collect();
+            return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
         }
     }
-    Ok(Selection::Modules(modules))
+    match (recipes.pop(), recipes.is_empty() && modules.is_empty()) {
+        (None, _) => Ok(Selection::Modules(modules)),
+        (Some(recipe), true) => Ok(Selection::Recipe(recipe)),
+        (Some(recipe), false) => {
+            let name = recipe.of.name;
+            Err(Failure(format!("`{name}` is a recipe, which holds its modules already; copy it alone")))
+        }
+    }
 }
 
-fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
-    if to == Target::Spirv {
-        let (module, function) = (modules[0].name, &modules[0].functions[0].name);
-        let message = format!(
-            "SPIR-V holds entry points, so that a function is wrapped in one; name a function, such as {module}::{function}"
-        );
-        return Err(Failure(message));
+/// Adds a name to those that came before; one without a function stands for all functions.
+fn add<T: 'static>(
+    wanted: &mut Vec<Wanted<T>>,
+    of: &'static T,
+    name: impl Fn(&'static T) -> &'static str,
+    function: Option<String>,
+) {
+    match (wanted.iter_mut().find(|other| name(other.of) == name(of)), function) {
+        (None, function) => wanted.push(Wanted { of, functions: function.into_iter().collect() }),
+        (Some(other), None) => other.functions.clear(),
+        (Some(other), Some(_)) if other.functions.is_empty() => {}
+        (Some(other), Some(function)) => other.functions.push(function),
     }
-    let texts: Vec<String> = match to.language() {
-        None => modules.iter().map(|module| module.source.to_owned()).collect(),
-        Some(language) => {
-            modules.iter().map(|module| library(module.source, module.name, language)).collect::<Result<_, _>>()?
+}
+
+fn no_function(what: &str, name: &str, function: &str, known: &[&str]) -> Failure {
+    let suggestion = nearest::suggest_function(name, function, known);
+    Failure(format!("{what} `{name}` has no function `{function}`{suggestion}"))
+}
+
+fn of_modules(modules: &[Wanted<Module>], to: Target) -> Result<Vec<u8>, Failure> {
+    if to == Target::Spirv {
+        return match modules {
+            [Wanted { of, functions }] if functions.len() == 1 => kernel(of, &functions[0]),
+            _ => {
+                let (module, function) = (modules[0].of.name, &modules[0].of.functions[0].name);
+                Err(Failure(format!(
+                    "SPIR-V holds entry points, so that a function is wrapped in one; name one function, such as {module}::{function}"
+                )))
+            }
+        };
+    }
+    let texts = modules.iter().map(|Wanted { of, functions }| {
+        let wanted: Vec<&str> = functions.iter().map(String::as_str).collect();
+        // The module's own functions stand in `whole` as well, below the naive forms' own comment.
+        let some = of_functions(of.whole, &wanted).filter(|_| !wanted.is_empty());
+        let text = some.unwrap_or_else(|| of.source.to_owned());
+        match to.language() {
+            None => Ok(text),
+            Some(language) => library(&text, of.name, language),
+        }
+    });
+    Ok(texts.collect::<Result<Vec<_>, _>>()?.join("\n").into_bytes())
+}
+
+/// Returns the SPIR-V of a module's function, wrapped in a compute kernel.
+fn kernel(module: &Module, function: &str) -> Result<Vec<u8>, Failure> {
+    let mut ir = KernelModule::reflect(module.whole, module.name, function)?.module;
+    naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
+    spirv(&ir).map_err(Failure)
+}
+
+fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, Failure> {
+    let (name, to) = (recipe.of.name, arguments.to);
+    let fitting = [("--private", !arguments.private.is_empty()), ("--group", arguments.group.is_some())];
+    if let Some((option, _)) = fitting.iter().find(|(_, is_given)| *is_given && to != Target::Wgsl) {
+        return Err(Failure(format!("{option} is for WGSL; leave it or --to out")));
+    }
+    let in_recipe = |error: TranslateError| match error {
+        TranslateError::NoSuch { what, name: unknown, known } => {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            Failure(format!("recipe `{name}` has no {what} `{unknown}`{}", nearest::suggest(&unknown, &known)))
+        }
+        error => Failure(format!("recipe `{name}`: {error}")),
+    };
+    let values = arguments.set.iter().map(|set| set.split_once('=').ok_or(set));
+    let values = values.collect::<Result<Vec<_>, _>>();
+    let values = values.map_err(|set| Failure(format!("--set {set}: give a name and a value, such as BOUNCES=8")))?;
+    let source = with_constants(&with_effects(recipe.of, arguments.effects.as_deref())?, &values).map_err(in_recipe)?;
+    let wanted: Vec<&str> = recipe.functions.iter().map(String::as_str).collect();
+    if to == Target::Wgsl {
+        let some = match wanted.as_slice() {
+            [] => source,
+            wanted => of_functions(&source, wanted).ok_or_else(|| {
+                Failure(format!("`{name}::{}` goes with an effect that --effects leaves out", wanted.join("`, `")))
+            })?,
+        };
+        let private: Vec<&str> = arguments.private.iter().map(String::as_str).collect();
+        let text = with_private(&some, &private).map_err(in_recipe)?;
+        let Some(group) = &arguments.group else { return Ok(text.into_bytes()) };
+        if !is_group(group) {
+            return Err(Failure(format!(
+                "--group {group}: give a number, or a preprocessor's name such as #{{MATERIAL_BIND_GROUP}}"
+            )));
+        }
+        return Ok(in_group(&text, group).into_bytes());
+    }
+    let (mut ir, _) = dispatch::parse(&source, name)?;
+    let points: Vec<&str> = ir.entry_points.iter().map(|point| point.name.as_str()).collect();
+    let entry = match wanted.as_slice() {
+        [] => None,
+        [entry] if points.contains(entry) => Some(*entry),
+        _ => {
+            let known: Vec<String> = points.iter().map(|point| format!("{name}::{point}")).collect();
+            return Err(Failure(format!(
+                "in other languages than WGSL a recipe's bindings belong to an entry point; name one of {}",
+                known.join(", ")
+            )));
         }
     };
-    Ok(texts.join("\n").into_bytes())
-}
-
-fn of_one_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
-    if to == Target::Spirv {
-        let kernel = KernelModule::reflect(module.whole, module.name, function)?;
-        let mut ir = kernel.module;
-        naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
-        return spirv(&ir).map_err(Failure);
-    }
-    // The module's own functions stand in `whole` as well, below the naive forms' own comment.
-    let text = of_function(module.whole, function).unwrap_or_else(|| module.whole.to_owned());
-    Ok(match to.language() {
-        None => text,
-        Some(language) => library(&text, module.name, language)?,
-    }
-    .into_bytes())
-}
-
-fn of_recipe(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
-    let (mut ir, _) = dispatch::parse(source, name)?;
-    if let Some(entry) = entry
-        && !ir.entry_points.iter().any(|point| point.name == entry)
-    {
-        let points: Vec<&str> = ir.entry_points.iter().map(|point| point.name.as_str()).collect();
-        let suggestion = nearest::suggest_function(name, entry, &points);
-        return Err(Failure(format!("`{name}` has no entry point `{entry}`{suggestion}")));
-    }
     if let Some(language) = to.language() {
-        return Ok(shader(source, name, language, entry)?.into_bytes());
-    }
-    if to == Target::Wgsl {
-        let alone = entry.and_then(|entry| of_function(source, entry));
-        return Ok(alone.unwrap_or_else(|| source.to_owned()).into_bytes());
+        return Ok(shader(&source, name, language, entry)?.into_bytes());
     }
     if let Some(entry) = entry {
+        let entry = entry.to_owned();
         ir.entry_points.retain(|point| point.name == entry);
     }
     spirv(&ir).map_err(Failure)
+}
+
+/// Whether it is a group's number, or a name that a preprocessor replaces.
+fn is_group(text: &str) -> bool {
+    let name = text.strip_prefix("#{").and_then(|rest| rest.strip_suffix('}'));
+    match name {
+        Some(name) => !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
+        None => text.parse::<u8>().is_ok(),
+    }
 }
 
 /// Returns the recipe to paste, without marks. If effects are named, the lines of all others are cut,

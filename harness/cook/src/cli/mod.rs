@@ -25,6 +25,7 @@ mod scene;
 mod snapshots;
 mod test;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use lapidary_gpu::{AdapterChoice, Gpu};
 use std::process::ExitCode;
@@ -90,10 +91,35 @@ impl Context {
     }
 }
 
+/// Returns clap's message as one line, without the usage, which `--help` prints.
+fn one_line(message: &str) -> String {
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let parts = message.lines().map(str::trim).take_while(|line| !line.starts_with("Usage: "));
+    let parts = parts.filter(|line| !line.is_empty() && !line.starts_with("For more information"));
+    let mut line = String::new();
+    for part in parts {
+        let part = part.trim_matches(['[', ']']);
+        let joint = if line.is_empty() {
+            ""
+        } else if line.ends_with(':') {
+            " "
+        } else {
+            "; "
+        };
+        line.push_str(joint);
+        line.push_str(part.strip_prefix("tip: ").unwrap_or(part));
+    }
+    line
+}
+
 /// Parses the command line, runs the command and reports errors.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse_from(number::joined(std::env::args_os())) {
         Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() && error.kind() != ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprintln!("cook: {}", one_line(&error.to_string()));
+            return ExitCode::from(2);
+        }
         Err(error) => {
             // Help and version are not errors; clap knows the right stream and exit code.
             let _ = error.print();

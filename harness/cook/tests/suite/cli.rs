@@ -213,6 +213,69 @@ fn a_copied_function_holds_what_it_needs() {
     assert!(!entry.contains("// requires:") && !entry.contains("// screen: "), "{entry}");
 }
 
+/// A recipe's function takes a host's own eye, group and vertex stage, and needs nothing else of the recipe.
+#[test]
+fn a_copied_function_fits_a_host_of_its_own() {
+    let folder = folder();
+    let copy = |more: &[&str]| {
+        let usual = ["copy", "gem_walk::gem_radiance", "--effects", "convex_trace,dispersion"];
+        succeeds(folder.path(), &[&usual, more].concat()).stdout
+    };
+    let text = copy(&["--set", "BOUNCES=8,DISPERSION_FORM=1", "--private", "view", "--group", "2"]);
+    assert!(text.contains("const BOUNCES: u32 = 8u;") && !text.contains("fn gem_vertex("), "{text}");
+    let host = "
+struct Eye {
+    position: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> eye: Eye;
+
+@fragment
+fn main(
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) @interpolate(flat) normal: vec3f,
+    @location(2) @interpolate(flat) face: u32,
+) -> @location(0) vec4f {
+    view.eye = eye.position;
+    let radiance = gem_radiance(GemVertex(clip, position, normal, face), true);
+    return vec4f(radiance.surface + radiance.inside, 1.0f);
+}
+";
+    let (ir, _) = dispatch::parse(&(text.clone() + host), "host.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    let mut bound: Vec<(u32, u32, &str)> = ir
+        .global_variables
+        .iter()
+        .filter_map(|(_, variable)| Some((variable.binding?, variable.name.as_deref()?)))
+        .map(|(at, name)| (at.group, at.binding, name))
+        .collect();
+    bound.sort_unstable();
+    let expected = [
+        (0, 0, "eye"),
+        (2, 0, "material"),
+        (2, 1, "wavelengths"),
+        (2, 2, "planes"),
+        (2, 3, "facet_map"),
+        (2, 4, "stone"),
+    ];
+    assert_eq!(bound, expected);
+    // A preprocessor's name stands where the number does.
+    let named = copy(&["--private", "view", "--group", "#{MATERIAL}", "--set", "BOUNCES=8,DISPERSION_FORM=1"]);
+    assert_eq!(named.replace("#{MATERIAL}", "2"), text);
+}
+
+#[test]
+fn functions_of_several_modules_are_copied_together() {
+    let text =
+        succeeds(folder().path(), &["copy", "fresnel::normal_incidence", "refraction", "fresnel::schlick"]).stdout;
+    let (ir, _) = dispatch::parse(&text, "optics.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    let names: Vec<&str> = ir.functions.iter().filter_map(|(_, function)| function.name.as_deref()).collect();
+    for name in ["fresnel_schlick", "fresnel_normal_incidence", "refraction_reflect", "refraction_refract"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    assert!(!names.contains(&"fresnel_dielectric"), "{names:?}");
+}
+
 #[test]
 fn copies_are_written_in_other_languages() {
     let folder = folder();

@@ -8,7 +8,7 @@
 use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_cook::cookbook::{Module, modules};
 use lapidary_cook::{dist, formulas};
-use lapidary_translate::declarations::{declarations, of_function, words};
+use lapidary_translate::declarations::{declarations, of_functions, words};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
 use lapidary_wgsl::RECIPES;
 use naga::ShaderStage;
@@ -166,7 +166,7 @@ fn every_function_compiles_alone_in_every_language() {
         .par_iter()
         .flat_map(|formula| {
             let module = modules().iter().find(|module| module.name == formula.module).expect("a formula's module");
-            let alone = of_function(module.whole, formula.function).expect("a function of the module");
+            let alone = of_functions(module.whole, &[formula.function]).expect("a function of the module");
             let mut faults = Vec::new();
             for language in Language::ALL {
                 match library(&alone, module.name, language) {

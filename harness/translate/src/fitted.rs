@@ -1,0 +1,215 @@
+//! WGSL fitted to a host that has values, bindings and groups of its own.
+
+use crate::TranslateError;
+use crate::declarations::words;
+use naga::valid::TypeFlags;
+
+/// Returns the text with constants in place of these overrides. A value is written as in WGSL, without a
+/// suffix: `true`, `8`, `0.5`.
+///
+/// # Errors
+/// Returns an error if the text has no such override, or if a value is not of its type.
+pub fn with_constants(source: &str, values: &[(&str, &str)]) -> Result<String, TranslateError> {
+    let known: Vec<&str> = source.lines().filter_map(|line| Some(override_of(line)?.0)).collect();
+    if let Some((unknown, _)) = values.iter().find(|(name, _)| !known.contains(name)) {
+        return Err(unknown_name("override", unknown, &known));
+    }
+    lines_of(source, |line| {
+        let Some((name, ty)) = override_of(line) else { return Ok(line.to_owned()) };
+        let Some((_, value)) = values.iter().find(|(wanted, _)| *wanted == name) else { return Ok(line.to_owned()) };
+        match literal(ty, value) {
+            Some(literal) => Ok(format!("const {name}: {ty} = {literal};")),
+            None => Err(TranslateError::Fit(format!("`{name}` is of type {ty}; `{value}` is no value of it"))),
+        }
+    })
+}
+
+/// Returns the text with private variables in place of these bindings: the host's own stage sets them
+/// before it calls a function.
+///
+/// # Errors
+/// Returns an error if the text is not valid, has no such binding, or writes it, and if a variable cannot
+/// hold what is bound: a texture, a sampler, an array without a length.
+pub fn with_private(source: &str, names: &[&str]) -> Result<String, TranslateError> {
+    let (module, info) = lapidary_specialise::parse(source, "the shader")?;
+    let bound: Vec<(&str, bool)> = module
+        .global_variables
+        .iter()
+        .filter(|(_, variable)| variable.binding.is_some())
+        .filter_map(|(_, variable)| {
+            let holds = info[variable.ty].contains(TypeFlags::CONSTRUCTIBLE);
+            Some((variable.name.as_deref()?, holds))
+        })
+        .collect();
+    for name in names {
+        match bound.iter().find(|(bound, _)| bound == name) {
+            None => {
+                let known: Vec<&str> = bound.iter().map(|(name, _)| *name).collect();
+                return Err(unknown_name("binding", name, &known));
+            }
+            Some((_, false)) => {
+                return Err(TranslateError::Fit(format!(
+                    "`{name}` cannot be private: it is a texture, a sampler or an array without a length; keep its binding"
+                )));
+            }
+            Some((_, true)) => {}
+        }
+    }
+    lines_of(source, |line| match binding_of(line) {
+        Some(Bound { name, declared, .. }) if names.contains(&name) => {
+            if declared.contains("read_write") {
+                return Err(TranslateError::Fit(format!(
+                    "`{name}` cannot be private: it is written; keep its binding"
+                )));
+            }
+            let ty = line.split_once(&format!("{name}:")).map_or("", |(_, ty)| ty);
+            Ok(format!("var<private> {name}:{ty}"))
+        }
+        _ => Ok(line.to_owned()),
+    })
+}
+
+/// Returns the text with all bindings in one group, numbered from 0 in the order that they had, and a first
+/// comment that lists them. The group is a number, or what a preprocessor replaces, such as
+/// `#{MATERIAL_BIND_GROUP}`.
+#[must_use]
+pub fn in_group(source: &str, group: &str) -> String {
+    let mut bound: Vec<Bound<'_>> = source.lines().filter_map(binding_of).collect();
+    bound.sort_by_key(|bound| bound.at);
+    let place = |at: (u32, u32)| bound.iter().position(|bound| bound.at == at).unwrap_or_default();
+    let mut text =
+        format!("// All bindings are in group {group}. In brackets: their group and binding in the recipe.\n");
+    for (number, Bound { name, at, declared }) in bound.iter().enumerate() {
+        text.push_str(&format!("//   {number}: {declared} {name} ({}, {})\n", at.0, at.1));
+    }
+    text.push('\n');
+    for line in source.lines() {
+        match binding_of(line) {
+            Some(bound) => {
+                let rest = line.find(" var").map_or("", |at| &line[at..]);
+                text.push_str(&format!("@group({group}) @binding({}){rest}\n", place(bound.at)));
+            }
+            None => {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// A binding, as a line declares it.
+struct Bound<'a> {
+    name: &'a str,
+    /// Group and binding.
+    at: (u32, u32),
+    /// `var<uniform>` and its like.
+    declared: &'a str,
+}
+
+fn binding_of(line: &str) -> Option<Bound<'_>> {
+    let (group, rest) = line.strip_prefix("@group(")?.split_once(") @binding(")?;
+    let (binding, rest) = rest.split_once(") ")?;
+    let (declaration, _) = rest.split_once(':')?;
+    let (declared, name) = declaration.rsplit_once(' ')?;
+    Some(Bound { name, at: (group.parse().ok()?, binding.parse().ok()?), declared })
+}
+
+/// Returns the name and the type of an override.
+fn override_of(line: &str) -> Option<(&str, &str)> {
+    let (name, rest) = line.strip_prefix("override ")?.split_once(':')?;
+    Some((name.trim(), words(rest).next()?))
+}
+
+/// Returns a value as a literal of a type; `None` if it is none.
+fn literal(ty: &str, value: &str) -> Option<String> {
+    match ty {
+        "bool" => value.parse::<bool>().ok().map(|value| value.to_string()),
+        "u32" => value.parse::<u32>().ok().map(|value| format!("{value}u")),
+        "i32" => value.parse::<i32>().ok().map(|value| format!("{value}i")),
+        "f32" => value.parse::<f32>().ok().filter(|value| value.is_finite()).map(|value| format!("{value:?}f")),
+        _ => None,
+    }
+}
+
+fn unknown_name(what: &'static str, name: &str, known: &[&str]) -> TranslateError {
+    let known = known.iter().map(|name| (*name).to_owned()).collect();
+    TranslateError::NoSuch { what, name: name.to_owned(), known }
+}
+
+fn lines_of(source: &str, changed: impl Fn(&str) -> Result<String, TranslateError>) -> Result<String, TranslateError> {
+    source.lines().map(|line| Ok(changed(line)? + "\n")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "\
+// Number of steps.
+override STEPS: u32 = 1u;
+override SCALE: f32 = 1.0f;
+override ON: bool = false;
+
+struct View {
+    eye: vec3f,
+}
+
+// The eye.
+@group(0) @binding(3) var<uniform> view: View;
+@group(1) @binding(0) var<storage, read> planes: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> count: u32;
+@group(0) @binding(1) var map: texture_2d<f32>;
+
+fn seen() -> vec4f {
+    count = STEPS;
+    if (ON) {
+        return SCALE * planes[0] + textureLoad(map, vec2u(0u), 0);
+    }
+    return vec4f(view.eye, 1.0f);
+}
+";
+
+    #[test]
+    fn overrides_become_constants_of_their_type() {
+        let text = with_constants(TEXT, &[("STEPS", "8"), ("SCALE", "2"), ("ON", "true")]).expect("set");
+        for line in ["const STEPS: u32 = 8u;", "const SCALE: f32 = 2.0f;", "const ON: bool = true;"] {
+            assert!(text.contains(line), "{text}");
+        }
+        assert!(text.starts_with("// Number of steps.\nconst"), "{text}");
+        lapidary_specialise::parse(&text, "text").expect("valid");
+        assert_eq!(with_constants(TEXT, &[]).expect("as it was"), TEXT);
+        for (name, value) in [("STEPS", "-1"), ("STEPS", "8u"), ("SCALE", "inf"), ("ON", "1"), ("STEP", "1")] {
+            with_constants(TEXT, &[(name, value)]).expect_err(value);
+        }
+    }
+
+    #[test]
+    fn a_struct_may_be_private_and_nothing_else() {
+        let text = with_private(TEXT, &["view"]).expect("private");
+        assert_eq!(text, TEXT.replace("@group(0) @binding(3) var<uniform> view", "var<private> view"));
+        lapidary_specialise::parse(&text, "text").expect("valid");
+        for name in ["planes", "map", "count", "vieu"] {
+            with_private(TEXT, &[name]).expect_err(name);
+        }
+    }
+
+    #[test]
+    fn bindings_share_a_group_in_the_order_that_they_had() {
+        let text = in_group(TEXT, "2");
+        let (module, _) = lapidary_specialise::parse(&text, "text").expect("valid");
+        let mut bound: Vec<(u32, &str)> = module
+            .global_variables
+            .iter()
+            .filter_map(|(_, variable)| Some((variable.binding?, variable.name.as_deref()?)))
+            .map(|(at, name)| {
+                assert_eq!(at.group, 2);
+                (at.binding, name)
+            })
+            .collect();
+        bound.sort_unstable();
+        assert_eq!(bound, [(0, "map"), (1, "view"), (2, "count"), (3, "planes")]);
+        assert!(text.contains("//   3: var<storage, read> planes (1, 0)\n"), "{text}");
+        assert!(in_group(TEXT, "#{GROUP}").contains("@group(#{GROUP}) @binding(0) var map:"));
+    }
+}
