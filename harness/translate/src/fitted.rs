@@ -25,53 +25,81 @@ pub fn with_constants(source: &str, values: &[(&str, &str)]) -> Result<String, T
 }
 
 /// Returns the text with private variables in place of these bindings: the host's own stage sets them
-/// before it calls a function.
+/// before it calls a function. `planes[73]` gives an array without a length its length.
 ///
 /// # Errors
 /// Returns an error if the text is not valid, has no such binding, or writes it, and if a variable cannot
-/// hold what is bound: a texture, a sampler, an array without a length.
+/// hold what is bound: a texture, a sampler, an array without a length or whose length is asked for.
 pub fn with_private(source: &str, names: &[&str]) -> Result<String, TranslateError> {
+    if names.is_empty() {
+        return Ok(source.to_owned());
+    }
     let (module, info) = lapidary_specialise::parse(source, "the shader")?;
-    let bound: Vec<(&str, bool)> = module
+    let bound: Vec<(&str, TypeFlags)> = module
         .global_variables
         .iter()
         .filter(|(_, variable)| variable.binding.is_some())
-        .filter_map(|(_, variable)| {
-            let holds = info[variable.ty].contains(TypeFlags::CONSTRUCTIBLE);
-            Some((variable.name.as_deref()?, holds))
-        })
+        .filter_map(|(_, variable)| Some((variable.name.as_deref()?, info[variable.ty])))
         .collect();
-    for name in names {
-        match bound.iter().find(|(bound, _)| bound == name) {
+    let names: Vec<(&str, Option<&str>)> = names.iter().map(|name| with_length(name)).collect();
+    for (name, length) in &names {
+        let Some((_, flags)) = bound.iter().find(|(bound, _)| bound == name) else {
+            let known: Vec<&str> = bound.iter().map(|(name, _)| *name).collect();
+            return Err(unknown_name("binding", name, &known));
+        };
+        let fit = |why: String| Err(TranslateError::Fit(why));
+        let is_array = flags.contains(TypeFlags::DATA) && !flags.contains(TypeFlags::SIZED);
+        match length {
+            Some(length) if !is_array => return fit(format!("`{name}` has no length to set; leave [{length}] out")),
+            Some(length) if length.parse::<u32>().is_ok_and(|length| length > 0) => {}
+            Some(length) => return fit(format!("`{name}[{length}]`: give the number of elements, such as {name}[1]")),
+            None if flags.contains(TypeFlags::CONSTRUCTIBLE) => {}
+            None if is_array => {
+                return fit(format!("`{name}` is an array without a length; give one, such as {name}[1]"));
+            }
             None => {
-                let known: Vec<&str> = bound.iter().map(|(name, _)| *name).collect();
-                return Err(unknown_name("binding", name, &known));
+                return fit(format!(
+                    "`{name}` is a texture, a sampler or atomic, which no variable holds; leave it out"
+                ));
             }
-            Some((_, false)) => {
-                return Err(TranslateError::Fit(format!(
-                    "`{name}` cannot be private: it is a texture, a sampler or an array without a length; keep its binding"
-                )));
-            }
-            Some((_, true)) => {}
         }
     }
-    lines_of(source, |line| match binding_of(line) {
-        Some(Bound { name, declared, .. }) if names.contains(&name) => {
-            if declared.contains("read_write") {
-                return Err(TranslateError::Fit(format!(
-                    "`{name}` cannot be private: it is written; keep its binding"
-                )));
-            }
-            let ty = line.split_once(&format!("{name}:")).map_or("", |(_, ty)| ty);
-            Ok(format!("var<private> {name}:{ty}"))
+    let text = lines_of(source, |line| {
+        let Some(Bound { name, declared, .. }) = binding_of(line) else { return Ok(line.to_owned()) };
+        let Some((_, length)) = names.iter().find(|(wanted, _)| *wanted == name) else { return Ok(line.to_owned()) };
+        if declared.contains("read_write") {
+            return Err(TranslateError::Fit(format!("`{name}` is written; leave it out")));
         }
-        _ => Ok(line.to_owned()),
-    })
+        let ty = line.split_once(&format!("{name}:")).map_or("", |(_, ty)| ty);
+        let ty = length.map_or(ty.to_owned(), |length| ty.replace(">;", &format!(", {length}>;")));
+        Ok(format!("var<private> {name}:{ty}"))
+    })?;
+    match lapidary_specialise::parse(&text, "the shader") {
+        Ok(_) => Ok(text),
+        // What is left to go wrong: only arrays without a length are asked for theirs.
+        Err(_) => Err(TranslateError::Fit(format!(
+            "the length of {} is asked for, which needs a buffer; leave it out",
+            names
+                .iter()
+                .filter(|(_, length)| length.is_some())
+                .map(|(name, _)| format!("`{name}`"))
+                .collect::<Vec<_>>()
+                .join(" or ")
+        ))),
+    }
+}
+
+/// Splits `name[length]`.
+fn with_length(name: &str) -> (&str, Option<&str>) {
+    match name.strip_suffix(']').and_then(|name| name.split_once('[')) {
+        Some((name, length)) => (name, Some(length)),
+        None => (name, None),
+    }
 }
 
 /// Returns the text with all bindings in one group, numbered from 0 in the order that they had, and a first
-/// comment that lists them. The group is a number, or what a preprocessor replaces, such as
-/// `#{MATERIAL_BIND_GROUP}`.
+/// comment that lists them. The group is a number, or what stands for one: a constant's name, or what a
+/// preprocessor replaces, such as `#{MATERIAL_BIND_GROUP}`.
 #[must_use]
 pub fn in_group(source: &str, group: &str) -> String {
     let mut bound: Vec<Bound<'_>> = source.lines().filter_map(binding_of).collect();
@@ -185,11 +213,15 @@ fn seen() -> vec4f {
     }
 
     #[test]
-    fn a_struct_may_be_private_and_nothing_else() {
+    fn what_a_variable_can_hold_may_be_private() {
         let text = with_private(TEXT, &["view"]).expect("private");
         assert_eq!(text, TEXT.replace("@group(0) @binding(3) var<uniform> view", "var<private> view"));
         lapidary_specialise::parse(&text, "text").expect("valid");
-        for name in ["planes", "map", "count", "vieu"] {
+        let text = with_private(TEXT, &["view", "planes[3]"]).expect("private");
+        assert!(text.contains("var<private> planes: array<vec4f, 3>;"), "{text}");
+        let asked = TEXT.replace("count = STEPS;", "count = arrayLength(&planes);");
+        with_private(&asked, &["planes[3]"]).expect_err("its length is asked for");
+        for name in ["planes", "planes[0]", "planes[n]", "view[1]", "map", "map[1]", "count", "vieu"] {
             with_private(TEXT, &[name]).expect_err(name);
         }
     }

@@ -30,12 +30,12 @@ pub(super) struct Arguments {
     /// Overrides of a recipe to write as constants, for hosts that set none.
     #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Structs that a recipe binds to declare as private variables instead: your own stage sets them,
-    /// from bindings that it has already, before it calls a function.
+    /// Bindings of a recipe to declare as private variables instead: your own stage sets them, from what
+    /// it has already, before it calls a function. BINDING[LENGTH] for an array without a length.
     #[arg(long, value_delimiter = ',', value_name = "BINDING")]
     private: Vec<String>,
-    /// Puts all bindings of a recipe into this group, numbered from 0: a number, or what a preprocessor
-    /// replaces, such as #{MATERIAL_BIND_GROUP}.
+    /// Puts all bindings of a recipe into this group, numbered from 0: a number, a constant's name, or what
+    /// a preprocessor replaces, such as #{MATERIAL_BIND_GROUP}.
     #[arg(long)]
     group: Option<String>,
     /// Shading language.
@@ -235,7 +235,7 @@ fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, 
         let Some(group) = &arguments.group else { return Ok(text.into_bytes()) };
         if !is_group(group) {
             return Err(Failure(format!(
-                "--group {group}: give a number, or a preprocessor's name such as #{{MATERIAL_BIND_GROUP}}"
+                "--group {group}: give a number, a constant's name, or a preprocessor's name such as #{{MATERIAL_BIND_GROUP}}"
             )));
         }
         return Ok(in_group(&text, group).into_bytes());
@@ -263,12 +263,15 @@ fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, 
     spirv(&ir).map_err(Failure)
 }
 
-/// Whether it is a group's number, or a name that a preprocessor replaces.
+/// Whether it is a group's number, a constant's name, or a name that a preprocessor replaces.
 fn is_group(text: &str) -> bool {
-    let name = text.strip_prefix("#{").and_then(|rest| rest.strip_suffix('}'));
-    match name {
-        Some(name) => !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
-        None => text.parse::<u8>().is_ok(),
+    let is_name = |name: &str| {
+        name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    match text.strip_prefix("#{").and_then(|rest| rest.strip_suffix('}')) {
+        Some(name) => is_name(name),
+        None => text.parse::<u8>().is_ok() || text.split("::").all(is_name),
     }
 }
 

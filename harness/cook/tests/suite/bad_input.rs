@@ -308,9 +308,10 @@ const OTHERS: &[Row] = &[
     ("copy gem --set BOUNCES --out {}/out.wgsl", One, &["--set BOUNCES", "BOUNCES=8"]),
     ("copy gem --set BOUNCES=-8 --out {}/out.wgsl", One, &["`BOUNCES` is of type u32", "`-8`"]),
     ("copy gem --private vew --out {}/out.wgsl", One, &["no binding `vew`", "did you mean `view`?"]),
-    ("copy gem --private normals --out {}/out.wgsl", One, &["`normals` cannot be private", "array without a length"]),
+    ("copy gem --private normals --out {}/out.wgsl", One, &["`normals` is an array without a length", "normals[1]"]),
     ("copy gem --private view --to msl --out {}/out.metal", One, &["--private is for WGSL"]),
-    ("copy gem --group first --out {}/out.wgsl", One, &["--group first", "#{MATERIAL_BIND_GROUP}"]),
+    ("copy gem --private environment_map --out {}/out.wgsl", One, &["`environment_map` is a texture"]),
+    ("copy gem --group 3rd --out {}/out.wgsl", One, &["--group 3rd", "#{MATERIAL_BIND_GROUP}"]),
     ("copy refraction --set BOUNCES=8 --out {}/out.wgsl", One, &["--set is for a recipe"]),
     (
         "copy voxelize::voxelize_finish --to glsl-es --out {}/out.glsl",
