@@ -9,7 +9,7 @@ pub mod record;
 pub mod user_file;
 
 use crate::cookbook::header::FunctionDoc;
-use crate::{cookbook, formulas};
+use crate::{cookbook, formulas, repository};
 use difference::Difference;
 use in_browser::InBrowser;
 use lapidary_assay::dispatch::signature::Signature;
@@ -28,7 +28,7 @@ use lapidary_assay::tolerance::Tolerance;
 use lapidary_browser::{Adapter, Browser};
 use lapidary_gpu::Gpu;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Why a check could not run; a check that ran and failed is a report instead.
 #[derive(Debug, thiserror::Error)]
@@ -53,10 +53,11 @@ pub enum CheckError {
 }
 
 /// Returns the folder in which the cookbook's own failing inputs are stored and from which they are
-/// replayed: inside the build folder, which is `CARGO_TARGET_DIR` or else the cookbook's `target`.
+/// replayed: inside the build folder, which is `CARGO_TARGET_DIR` or else the cookbook's `target`; without
+/// the cookbook, inside the system's folder for temporary files.
 pub fn failures() -> Regressions {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    let target = target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"));
+    let target = target.or_else(|| Some(repository::root()?.join("target"))).unwrap_or_else(std::env::temp_dir);
     Regressions::in_folder(target.join("lapidary/failures"))
 }
 

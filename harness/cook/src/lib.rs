@@ -12,6 +12,7 @@ pub mod folder;
 pub mod formulas;
 pub mod gallery;
 pub mod motion;
+pub mod repository;
 pub mod seed;
 pub mod snapshot;
 pub mod text_file;

@@ -28,13 +28,13 @@ pub(super) enum Choice {
 
 /// Returns the rung or technique for an object, and the reason.
 pub(super) fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
-    let material = &object.material;
-    if request.rung.is_for_clear_stones() && !material.is_clear() {
+    let asked = request.rung_of(object);
+    if asked.is_for_clear_stones() && !object.material.is_clear() {
         let (choice, reason) = by_material(object, scene, request);
-        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", request.rung));
+        return (choice, format!("{asked} was asked for, which is for clear stones, but {reason}"));
     }
-    if request.rung != Rung::ByMaterial {
-        return (Choice::Named(request.rung), "asked for".to_owned());
+    if asked != Rung::ByMaterial {
+        return (Choice::Named(asked), "asked for".to_owned());
     }
     by_material(object, scene, request)
 }

@@ -190,12 +190,13 @@ impl Case<'_> {
 
     /// Returns why no light is followed inside a clear body.
     fn no_inside(&self) -> String {
-        if self.request.rung == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }.to_owned()
+        if self.request.rung_of(self.object) == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }
+            .to_owned()
     }
 
     fn thin_wall(&self) -> Answer {
         match self.rung {
-            Rung::Surface if self.request.rung != Rung::Surface => {
+            Rung::Surface if self.request.rung_of(self.object) != Rung::Surface => {
                 on(format!("transmission {}, thickness 0", self.material.transmission))
             }
             Rung::Surface => off(self.no_inside()),
@@ -357,7 +358,7 @@ impl Case<'_> {
             Rung::Diffuse(_) | Rung::OpticalPath(_) => {}
             _ => return off(self.not_clear()),
         }
-        if !self.request.half_space && self.request.rung != Rung::ByMaterial {
+        if !self.request.half_space && self.request.rung_of(self.object) != Rung::ByMaterial {
             return off("a rung is asked for: --with half_space");
         }
         if !self.request.half_space && self.request.quality == Quality::Fast {
@@ -464,7 +465,7 @@ impl Case<'_> {
             return Err("clear bodies are lit by the environment".to_owned());
         };
         let asked = self.request.shadows || reflectance == Reflectance::LambertShadowed;
-        if !asked && self.request.rung != Rung::ByMaterial {
+        if !asked && self.request.rung_of(self.object) != Rung::ByMaterial {
             return Err("a rung is asked for: --with shadow or the rung lambert-shadowed".to_owned());
         }
         if !asked && self.request.quality == Quality::Fast {
@@ -497,7 +498,7 @@ impl Case<'_> {
     /// Shadow on a body through which light is followed.
     fn shadow_on_body(&self) -> Answer {
         let own = "its own is part of the rung: light enters where its source sees the body";
-        if self.request.rung != Rung::ByMaterial {
+        if self.request.rung_of(self.object) != Rung::ByMaterial {
             return off(own);
         }
         if self.request.quality == Quality::Fast {

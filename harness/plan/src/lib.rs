@@ -39,7 +39,7 @@ pub use outside::{MOST_BODIES, Outside};
 pub use quality::{Quality, Technique};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 
-use lapidary_scene::Environment;
+use lapidary_scene::{Environment, Object};
 
 /// The settings of a picture that decisions depend on.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,9 @@ pub struct Request<'a> {
     pub size: [u32; 2],
     /// The rung that draws the objects; `ByMaterial` chooses one for each.
     pub rung: Rung,
-    /// Time that a technique may take; used only if `rung` is `ByMaterial`.
+    /// Objects with a rung of their own, by name.
+    pub rungs: &'a [(String, Rung)],
+    /// Time that a technique may take; used only for objects whose rung is `ByMaterial`.
     pub quality: Quality,
     /// Effects that are left out even if a material requires them.
     pub without: Effects,
@@ -76,6 +78,7 @@ impl Request<'_> {
         Self {
             size,
             rung: Rung::ByMaterial,
+            rungs: &[],
             quality: Quality::default(),
             without: Effects::NONE,
             scattering: None,
@@ -86,5 +89,11 @@ impl Request<'_> {
             environment: &Environment::Studio,
             exposure: 1.0,
         }
+    }
+
+    /// Returns the rung that is asked for an object.
+    #[must_use]
+    pub fn rung_of(&self, object: &Object) -> Rung {
+        self.rungs.iter().find(|(name, _)| *name == object.name).map_or(self.rung, |(_, rung)| *rung)
     }
 }

@@ -85,8 +85,9 @@ impl Case<'_> {
         let objects = Objects { first: self.object.name.clone(), count: 1 };
         let rung = self.rung;
         let mut notes = Vec::new();
-        if self.request.rung.is_for_clear_stones() && !self.object.material.is_clear() {
-            notes.push(Note::NotClear { objects: objects.clone(), asked: self.request.rung, instead: rung });
+        let asked = self.request.rung_of(self.object);
+        if asked.is_for_clear_stones() && !self.object.material.is_clear() {
+            notes.push(Note::NotClear { objects: objects.clone(), asked, instead: rung });
         }
         let what = self.factors_alone();
         if !what.is_empty() {
@@ -153,7 +154,8 @@ impl Case<'_> {
 
     fn thin_wall(&self, objects: &Objects) -> Option<Note> {
         let material = &self.object.material;
-        if self.rung != Rung::Surface || self.request.rung == Rung::Surface || material.thickness > 0.0 {
+        if self.rung != Rung::Surface || self.request.rung_of(self.object) == Rung::Surface || material.thickness > 0.0
+        {
             return None;
         }
         let absorbs = material.absorbs().then_some("absorption");

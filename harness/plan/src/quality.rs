@@ -118,6 +118,21 @@ impl Technique {
         Self::ThinWall,
     ];
 
+    /// Returns what it draws, in a few words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Convex => "clear and convex",
+            Self::Concave => "clear, of any shape",
+            Self::Cdrf => "scattering near the surface",
+            Self::Translucent => "light through a body",
+            Self::OpticalPath => "light through a body, by paths",
+            Self::Diffusion => "light through a body, by diffusion",
+            Self::Opaque => "opaque",
+            Self::ThinWall => "thin wall",
+        }
+    }
+
     /// Returns the technique's rung for a quality.
     #[must_use]
     pub fn rung(self, quality: Quality) -> Rung {

@@ -30,6 +30,8 @@ pub struct Settings {
     pub exposure: f32,
     /// Rung that draws the bodies; `ByMaterial` chooses one for each.
     pub rung: Rung,
+    /// Bodies with a rung of their own, by name.
+    pub rungs: Vec<(String, Rung)>,
     /// Time that a technique may take; used only if `rung` is `ByMaterial`.
     pub quality: Quality,
     /// Effects that are left out even if a material requires them.
@@ -199,6 +201,7 @@ impl Settings {
             environment: Environment::Studio,
             exposure: 1.0,
             rung: Rung::PAPER,
+            rungs: Vec::new(),
             quality: Quality::default(),
             without: Effects::NONE,
             scattering: None,
@@ -219,6 +222,7 @@ impl Settings {
         Request {
             size: [self.width, self.height],
             rung: self.rung,
+            rungs: &self.rungs,
             quality: self.quality,
             without: self.without,
             scattering: self.scattering,

@@ -10,6 +10,7 @@ use super::{Averaging, Camera, Material, Mesh, Object, Scene, SceneError, gltf, 
 
 mod materials;
 mod pave;
+pub mod presets;
 mod prisms;
 mod stone;
 mod translucent;

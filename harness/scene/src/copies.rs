@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DMat4, DQuat, DVec3, Mat3, Quat, Vec3, Vec4};
 
-use super::{Material, Mesh, Object};
+use super::{Bounds, Material, Mesh, Object};
 
 /// One shape and the places at which a body shows it.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,6 +119,14 @@ impl Object {
     #[must_use]
     pub fn of_copies(name: impl Into<String>, copies: Copies, material: Material) -> Self {
         Self { name: name.into(), mesh: copies.joined(), material, copies: Some(copies) }
+    }
+
+    /// Returns the greatest extent of the body along an axis, or of its first copy, turned upright.
+    #[must_use]
+    pub fn extent(&self) -> f32 {
+        let bounds = Bounds::of(self.shape().positions.iter().copied());
+        let scale = self.copies.as_ref().and_then(|copies| copies.places.first()).map_or(1.0, |place| place.scale);
+        scale * (bounds.max - bounds.min).max_element()
     }
 
     /// Returns the surface of one copy in its own space; the mesh of a body that is shown once.

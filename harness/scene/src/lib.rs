@@ -48,6 +48,7 @@ pub mod surfaces;
 pub mod texture;
 pub mod view;
 
+pub use built_in::presets::{PRESETS, Preset};
 pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use camera::Camera;
 pub use convex::{Convex, Shape};

@@ -6,7 +6,7 @@ use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Sc
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
-use lapidary_scene::{Environment, Scene};
+use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene, nearest};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -18,10 +18,15 @@ pub(super) struct Asked {
     pub(super) size: (u32, u32),
     #[arg(
         long,
-        value_parser = |text: &str| text.parse::<Rung>(),
-        help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
+        value_name = "[NODE=]RUNG",
+        value_parser = parse_rung,
+        help = format!("How much of the light's way is followed, for all objects or one node's, and several times for several: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
-    rung: Option<Rung>,
+    rung: Vec<(Option<String>, Rung)>,
+    /// Material of a node's body, or of all, in place of the scene's, fitted to the body's size; several
+    /// times for several. `cook list --materials` names them.
+    #[arg(long, value_name = "[NODE=]PRESET", value_parser = parse_material)]
+    material: Vec<(Option<String>, &'static Preset)>,
     /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
@@ -55,10 +60,79 @@ fn parse_quality(text: &str) -> Result<Quality, String> {
     named("quality", text, Quality::ALL, Quality::name)
 }
 
+fn parse_rung(text: &str) -> Result<(Option<String>, Rung), String> {
+    let (node, rung) = of_node(text);
+    Ok((node, rung.parse()?))
+}
+
+fn parse_material(text: &str) -> Result<(Option<String>, &'static Preset), String> {
+    let (node, name) = of_node(text);
+    Ok((node, named("material", name, &PRESETS, |preset| preset.name)?))
+}
+
+/// Splits NODE=VALUE; a value holds no `=`, and a node's name may.
+fn of_node(text: &str) -> (Option<String>, &str) {
+    text.rsplit_once('=').map_or((None, text), |(node, value)| (Some(node.to_owned()), value))
+}
+
 impl Asked {
-    /// Returns the requested rung, or each material's own by default.
-    pub(super) fn rung(&self) -> Rung {
-        self.rung.unwrap_or(Rung::ByMaterial)
+    /// Opens the scene, with the materials that were asked for.
+    pub(super) fn open(&self) -> Result<Scene, Failure> {
+        let mut scene = Scene::open(&self.scene)?;
+        // Those of single nodes come last, so that they count.
+        let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
+        for (node, preset) in all.into_iter().chain(single) {
+            if let Some(node) = node {
+                refuse_unknown(&scene, node, "--material")?;
+            }
+            for object in &mut scene.objects {
+                if node.as_ref().is_none_or(|node| *node == object.name) {
+                    *object = preset.on(object);
+                }
+            }
+        }
+        Ok(scene)
+    }
+
+    /// Returns the rung that was asked for all objects, or each material's own by default, and those of
+    /// single ones.
+    fn rungs(&self, scene: &Scene) -> Result<(Rung, Vec<(String, Rung)>), Failure> {
+        let mut all = None;
+        let mut single: Vec<(String, Rung)> = Vec::new();
+        for (node, rung) in &self.rung {
+            let Some(node) = node else {
+                if let Some(before) = all.replace(*rung) {
+                    return Err(Failure(format!(
+                        "--rung {before} and --rung {rung}: all objects have one; name a node"
+                    )));
+                }
+                continue;
+            };
+            refuse_unknown(scene, node, "--rung")?;
+            if *rung == Rung::Reference {
+                return Err(Failure(format!(
+                    "--rung {node}={rung}: the reference draws a whole scene; leave `{node}=` out, or take another rung"
+                )));
+            }
+            let of_node = |object: &&Object| object.name == *node;
+            if rung.is_for_clear_stones()
+                && let Some(object) = scene.objects.iter().find(of_node)
+                && !object.material.is_clear()
+            {
+                return Err(Failure(format!(
+                    "--rung {node}={rung}: the rung is for clear stones, and `{node}` is of {}; take another",
+                    object.material.name
+                )));
+            }
+            if single.iter().any(|(name, _)| name == node) {
+                return Err(Failure(format!("--rung names `{node}` twice; leave one out")));
+            }
+            single.push((node.clone(), *rung));
+        }
+        if let (Some(Rung::Reference), Some((node, rung))) = (all, single.first()) {
+            return Err(Failure(format!("--rung {node}={rung}: the reference draws the whole scene; leave one out")));
+        }
+        Ok((all.unwrap_or(Rung::ByMaterial), single))
     }
 
     fn is_with(&self, name: &str) -> bool {
@@ -90,7 +164,8 @@ impl Asked {
         };
         let (shadows, half_space) = (self.is_with(SHADOW), self.is_with(HALF_SPACE));
         let (width, height) = self.size;
-        let (rung, quality) = (self.rung(), self.quality.unwrap_or_default());
+        let (rung, rungs) = self.rungs(scene)?;
+        let quality = self.quality.unwrap_or_default();
         if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial) {
             return Err(Failure(format!(
                 "--rung {rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
@@ -98,6 +173,7 @@ impl Asked {
         }
         let settings = Settings {
             rung,
+            rungs,
             quality,
             scattering,
             shadows,
@@ -156,6 +232,16 @@ impl Asked {
         }
         Ok(())
     }
+}
+
+/// Refuses a node that no object comes from.
+fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
+    let known: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    if known.contains(&node) {
+        return Ok(());
+    }
+    let scene = &scene.name;
+    Err(Failure(format!("scene `{scene}` has no node `{node}` for {option}{}", nearest::suggest(node, &known))))
 }
 
 /// Refuses an option that asks for an effect which no object has. Call it only if needed, because

@@ -220,7 +220,7 @@ impl Drawn {
     /// Opens the scene, and makes the settings and the environment's warnings. `others` are further
     /// options that were given.
     pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
-        let mut scene = Scene::open(&self.asked.scene)?;
+        let mut scene = self.asked.open()?;
         if let Some((polar, azimuth)) = self.from {
             scene = scene.seen_from(polar, azimuth);
         }
@@ -287,7 +287,7 @@ impl Drawn {
 /// Smooths facets' edges where one sample per pixel is all there is, unless a rung is named, or the
 /// quality is fast: docs/gem_ladder.md.
 fn smoothed_at_one_sample(scene: &Scene, settings: Settings) -> Settings {
-    let is_chosen = settings.rung == Rung::ByMaterial && settings.quality != Quality::Fast;
+    let is_chosen = settings.rung == Rung::ByMaterial && settings.rungs.is_empty() && settings.quality != Quality::Fast;
     if settings.samples > 1 || !is_chosen || settings.gem.deferred {
         return settings;
     }

@@ -3,6 +3,7 @@
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_cook::gallery::{self, Picture, Site};
+use lapidary_cook::repository;
 use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, SHOTS, WALKED, beside_walks, strip};
 use lapidary_render::file;
 use lapidary_scene::BUILT_IN;
@@ -21,8 +22,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let out =
-        arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gallery"));
+    let root = repository::required("gallery")?;
+    let out = arguments.out.clone().unwrap_or_else(|| root.join("target/gallery"));
     let gpu = context.gpu()?;
     let rendered = tempfile::tempdir()?;
     let bar = progress::bar(Committed::COUNT as u64, "rendering");
@@ -76,7 +77,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         });
     }
     bar.finish_and_clear();
-    let figures = plots();
+    let figures = plots(&root);
     let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &figures })?;
     let index = index.canonicalize().unwrap_or(index);
     output::line(&index.display().to_string())?;
@@ -88,11 +89,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 
 /// Committed plots, each with the name of its module or recipe. Measuring again takes minutes and a
 /// quiet machine.
-fn plots() -> Vec<(String, Picture)> {
+fn plots(root: &Path) -> Vec<(String, Picture)> {
     let figure = |name: &str, file: &str, command: &str, title: &str, paragraph: &str| {
         let picture = Picture {
             title: title.to_owned(),
-            file: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements").join(file),
+            file: root.join("docs/measurements").join(file),
             paragraph: paragraph.to_owned(),
             command: command.to_owned(),
             size: PLOT_SIZE,

@@ -7,6 +7,7 @@ mod browser;
 mod builtins;
 mod check;
 mod compare;
+mod completions;
 mod copy;
 mod cost;
 mod dist;
@@ -77,6 +78,7 @@ enum Command {
     Scene(scene::Arguments),
     Snapshots(snapshots::Arguments),
     Compare(compare::Arguments),
+    Completions(completions::Arguments),
 }
 
 /// State shared by all commands.
@@ -143,6 +145,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
     };
     browser::close();
     match outcome {

@@ -1,6 +1,7 @@
 //! `cook new`.
 
 use super::{Failure, Outcome, output};
+use lapidary_cook::repository;
 use std::path::{Path, PathBuf};
 
 /// Writes the files of a new technique, with functions to replace; they pass every test as they
@@ -42,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     check_name(name).map_err(Failure)?;
     let root = match &arguments.folder {
         Some(folder) => folder.clone(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."),
+        None => repository::required("new")?,
     };
     let changes = changes(&root, name).map_err(Failure)?;
     write(&changes).map_err(Failure)?;

@@ -5,7 +5,6 @@ use super::{Failure, Outcome, output};
 use lapidary_plan::Decision;
 use lapidary_plan::quality::Chosen;
 use lapidary_render::plan::{Kind, Pipeline, Plan, PlannedObject, Resource, Step};
-use lapidary_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -155,7 +154,7 @@ impl<'a> Document<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let scene = Scene::open(&arguments.asked.scene)?;
+    let scene = arguments.asked.open()?;
     let (settings, notes) = arguments.asked.settings(&scene)?;
     let mut plan = Plan::of(&scene, &settings)?;
     plan.notes.splice(..0, notes);

@@ -1,6 +1,7 @@
 //! `cook snapshots`.
 
 use super::{Context, Failure, Outcome, output, progress};
+use lapidary_cook::repository;
 use lapidary_cook::snapshot::{self, Committed};
 use lapidary_scene::nearest::suggest;
 
@@ -23,6 +24,7 @@ fn parse_name(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    repository::required("snapshots")?;
     let gpu = context.gpu()?;
     let chosen: Vec<Committed> = Committed::all()
         .filter(|committed| arguments.name.as_ref().is_none_or(|name| name == committed.name()))

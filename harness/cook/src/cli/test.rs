@@ -1,9 +1,9 @@
 //! `cook test`.
 
 use super::{Context, Failure, Outcome};
+use lapidary_cook::repository;
 use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::ADAPTER_VARIABLE;
-use std::path::Path;
 use std::process::Command;
 
 /// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
@@ -86,6 +86,7 @@ const REFRESHING: [(&str, &str); 4] = [
 const GENERATED: [&str; 3] = ["releases::", "text::", "user_file::the_page_shows"];
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let root = repository::required("test")?;
     // Reports a missing device at once, before minutes of building.
     context.gpu()?;
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
@@ -112,7 +113,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     for part in parts {
         let mut command = Command::new(&cargo);
         command.arg("test").args(*part).arg("--manifest-path");
-        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml"));
+        command.arg(root.join("Cargo.toml"));
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
         // The same seed for all parts, even if the tree changes meanwhile.
         command.env(SEED_VARIABLE, seed.value.to_string());

@@ -213,6 +213,90 @@ fn a_copied_function_holds_what_it_needs() {
     assert!(!entry.contains("// requires:") && !entry.contains("// screen: "), "{entry}");
 }
 
+/// What `list` names is what the options take.
+#[test]
+fn listed_names_are_those_that_the_options_take() {
+    let folder = folder();
+    let names = |what: &str, key: &str| -> Vec<String> {
+        let rows: Vec<serde_json::Value> =
+            serde_json::from_str(&succeeds(folder.path(), &["list", what, "--json"]).stdout).expect("JSON");
+        rows.iter().map(|row| row[key].as_str().expect("a name").to_owned()).collect()
+    };
+    let scenes = names("--scenes", "name");
+    assert!(scenes.len() > 30 && scenes.iter().all(|name| lapidary_scene::Scene::named(name).is_ok()), "{scenes:?}");
+    let rungs = names("--rungs", "rung");
+    assert!(rungs.len() > 50 && rungs.iter().all(|name| name.parse::<lapidary_plan::Rung>().is_ok()), "{rungs:?}");
+    let materials = names("--materials", "name");
+    let asked = "diamond, ruby, sapphire, emerald, quartz, moissanite, zirconia, jade, marble, wax, skin";
+    assert_eq!(materials.join(", "), asked);
+    for name in materials {
+        let plan = succeeds(folder.path(), &["plan", "octahedron", "--material", &name, "--json"]).stdout;
+        let plan: serde_json::Value = serde_json::from_str(&plan).expect("JSON");
+        assert_eq!(plan["objects"][0]["material"], *name);
+    }
+    // The table for people holds the same.
+    let text = succeeds(folder.path(), &["list", "--rungs"]).stdout;
+    assert!(text.lines().any(|line| line.contains("walk-8+tracker") && line.ends_with("good")), "{text}");
+}
+
+/// A node's own material and rung count for it alone.
+#[test]
+fn a_node_may_have_a_material_and_a_rung_of_its_own() {
+    let folder = folder();
+    let objects = |options: &[&str]| -> Vec<(String, String, String)> {
+        let arguments = [&["plan", "tray", "--json"], options].concat();
+        let plan: serde_json::Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON");
+        let text = |row: &serde_json::Value, key: &str| row[key].as_str().expect("a name").to_owned();
+        let rows = plan["objects"].as_array().expect("a list");
+        rows.iter().map(|row| (text(row, "object"), text(row, "material"), text(row, "rung"))).collect()
+    };
+    let usual = objects(&[]);
+    let changed = objects(&[
+        "--material",
+        "ball=jade",
+        "--material",
+        "diamond=ruby",
+        "--rung",
+        "diamond=convex-3",
+        "--rung",
+        "ball=godunov-32",
+    ]);
+    for (before, after) in usual.iter().zip(&changed) {
+        let expected = match before.0.as_str() {
+            "ball" => ("ball", "jade", "godunov-32"),
+            "diamond" => ("diamond", "ruby", "convex-3"),
+            _ => (before.0.as_str(), before.1.as_str(), before.2.as_str()),
+        };
+        assert_eq!((after.0.as_str(), after.1.as_str(), after.2.as_str()), expected);
+    }
+    // The one for all gives way to a node's own.
+    let all = objects(&["--material", "diamond=quartz", "--material", "emerald"]);
+    assert!(all.iter().all(|(object, material, _)| material == if object == "diamond" { "quartz" } else { "emerald" }));
+}
+
+/// A preset is the material of the scene that is named after it, down to the picture.
+#[test]
+fn a_brilliant_of_ruby_is_the_ruby() {
+    let folder = folder();
+    let render = |scene: &str, more: &[&str], out: &str| {
+        let usual = ["render", scene, "--size", "96x96", "--samples", "2", "--out", out];
+        succeeds(folder.path(), &[&usual, more].concat());
+        std::fs::read(folder.path().join(out)).expect("a picture")
+    };
+    let ruby = render("ruby", &[], "ruby.png");
+    assert!(render("brilliant", &["--material", "brilliant=ruby"], "dressed.png") == ruby);
+    assert!(render("brilliant", &[], "diamond.png") != ruby);
+}
+
+#[test]
+fn shells_complete_commands_and_options() {
+    let folder = folder();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = succeeds(folder.path(), &["completions", shell]).stdout;
+        assert!(script.contains("snapshots") && script.contains("material"), "{shell}: {script}");
+    }
+}
+
 /// A recipe's function takes a host's own eye, group and vertex stage, and needs nothing else of the recipe.
 #[test]
 fn a_copied_function_fits_a_host_of_its_own() {

@@ -83,12 +83,12 @@ pub(super) fn sized(material: Material, radius: f32) -> Material {
     Material { attenuation_distance, thickness, ..material }
 }
 
-fn measured(name: &str, mineral: Mineral) -> Material {
+pub(super) fn measured(name: &str, mineral: Mineral) -> Material {
     let dispersion = Dispersion::Sellmeier(mineral);
     Material { name: name.to_owned(), ior: mineral.index(), dispersion, ..polished() }
 }
 
-fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
+pub(super) fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
     let dispersion = Dispersion::Abbe(20.0 / abbe_number);
     Material { name: name.to_owned(), ior, dispersion, ..polished() }
 }

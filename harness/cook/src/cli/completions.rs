@@ -1,0 +1,22 @@
+//! `cook completions`.
+
+use super::{Failure, Outcome, output};
+use clap::CommandFactory;
+
+/// Prints a script with which a shell completes the names of commands, options and their values.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  cook completions bash > ~/.local/share/bash-completion/completions/cook\n  cook completions fish > ~/.config/fish/completions/cook.fish"
+)]
+pub(super) struct Arguments {
+    /// The shell.
+    #[arg(value_enum)]
+    shell: clap_complete::Shell,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut super::Arguments::command(), "cook", &mut script);
+    output::bytes(&script)?;
+    Ok(Outcome::Passed)
+}
