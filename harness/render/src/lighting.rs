@@ -74,7 +74,9 @@ impl<'a> Lighting<'a> {
     pub(super) fn lights(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.lights.get_or_init(|| {
             let lights = lights(self.scene);
-            builder.of_object("", |builder| builder.records("lights", lights, wgpu::BufferUsages::STORAGE))
+            // A host may move them.
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+            builder.of_object("", |builder| builder.records("lights", lights, usage))
         })
     }
 

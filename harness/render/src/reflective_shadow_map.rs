@@ -174,7 +174,9 @@ pub(super) fn view_buffer(builder: &mut Builder<'_>, views: &[LightView]) -> Buf
         let record = Record::new("LightView").within("view", |record| fill(from.view, record));
         record.with("light", from.light)
     };
-    builder.records("views of lights", views.iter().map(entry).collect(), wgpu::BufferUsages::STORAGE)
+    // A host may move the lights.
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    builder.records("views of lights", views.iter().map(entry).collect(), usage)
 }
 
 /// Fills a `ReflectiveShadowMapView` of the recipes.

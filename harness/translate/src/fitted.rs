@@ -2,10 +2,11 @@
 
 use crate::TranslateError;
 use crate::declarations::words;
+use crate::settled::settled;
 use naga::valid::TypeFlags;
 
-/// Returns the text with constants in place of these overrides. A value is written as in WGSL, without a
-/// suffix: `true`, `8`, `0.5`.
+/// Returns the text with constants in place of these overrides, without the branches that they rule out. A
+/// value is written as in WGSL, without a suffix: `true`, `8`, `0.5`.
 ///
 /// # Errors
 /// Returns an error if the text has no such override, or if a value is not of its type.
@@ -14,14 +15,18 @@ pub fn with_constants(source: &str, values: &[(&str, &str)]) -> Result<String, T
     if let Some((unknown, _)) = values.iter().find(|(name, _)| !known.contains(name)) {
         return Err(unknown_name("override", unknown, &known));
     }
-    lines_of(source, |line| {
+    if values.is_empty() {
+        return Ok(source.to_owned());
+    }
+    let text = lines_of(source, |line| {
         let Some((name, ty)) = override_of(line) else { return Ok(line.to_owned()) };
         let Some((_, value)) = values.iter().find(|(wanted, _)| *wanted == name) else { return Ok(line.to_owned()) };
         match literal(ty, value) {
             Some(literal) => Ok(format!("const {name}: {ty} = {literal};")),
             None => Err(TranslateError::Fit(format!("`{name}` is of type {ty}; `{value}` is no value of it"))),
         }
-    })
+    })?;
+    Ok(settled(&text))
 }
 
 /// Returns the text with private variables in place of these bindings: the host's own stage sets them
@@ -200,11 +205,13 @@ fn seen() -> vec4f {
 
     #[test]
     fn overrides_become_constants_of_their_type() {
-        let text = with_constants(TEXT, &[("STEPS", "8"), ("SCALE", "2"), ("ON", "true")]).expect("set");
-        for line in ["const STEPS: u32 = 8u;", "const SCALE: f32 = 2.0f;", "const ON: bool = true;"] {
+        let text = with_constants(TEXT, &[("STEPS", "8"), ("SCALE", "2")]).expect("set");
+        for line in ["const STEPS: u32 = 8u;", "const SCALE: f32 = 2.0f;"] {
             assert!(text.contains(line), "{text}");
         }
         assert!(text.starts_with("// Number of steps.\nconst"), "{text}");
+        let on = with_constants(TEXT, &[("ON", "true")]).expect("set");
+        assert!(on.contains("    return SCALE *") && !on.contains("if (ON)") && !on.contains("view.eye"), "{on}");
         lapidary_specialise::parse(&text, "text").expect("valid");
         assert_eq!(with_constants(TEXT, &[]).expect("as it was"), TEXT);
         for (name, value) in [("STEPS", "-1"), ("STEPS", "8u"), ("SCALE", "inf"), ("ON", "1"), ("STEP", "1")] {

@@ -17,6 +17,7 @@ mod hlsl;
 mod items;
 mod library;
 mod names;
+mod settled;
 mod shader;
 
 pub use library::library;

@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     /// that only they use. If omitted, all are kept, with the recipe's own defaults.
     #[arg(long, value_delimiter = ',', value_name = "a,b")]
     effects: Option<Vec<String>>,
-    /// Overrides of a recipe to write as constants, for hosts that set none.
+    /// Overrides of a recipe to write as constants, without the branches that they rule out.
     #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Bindings of a recipe to declare as private variables instead: your own stage sets them, from what
@@ -227,7 +227,7 @@ fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, 
         let some = match wanted.as_slice() {
             [] => source,
             wanted => of_functions(&source, wanted).ok_or_else(|| {
-                Failure(format!("`{name}::{}` goes with an effect that --effects leaves out", wanted.join("`, `")))
+                Failure(format!("`{name}::{}` goes with what --effects or --set leaves out", wanted.join("`, `")))
             })?,
         };
         let private: Vec<&str> = arguments.private.iter().map(String::as_str).collect();
