@@ -11,6 +11,7 @@ pub mod exposure;
 pub mod folder;
 pub mod formulas;
 pub mod gallery;
+pub mod host;
 pub mod motion;
 pub mod repository;
 pub mod seed;

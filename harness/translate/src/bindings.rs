@@ -2,7 +2,7 @@
 
 use crate::{Language, Setting};
 use naga::back::{hlsl, msl};
-use naga::{AddressSpace, GlobalVariable, ImageClass, Module, ResourceBinding, StorageAccess, TypeInner};
+use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, Module, ResourceBinding, StorageAccess, Type, TypeInner};
 use std::collections::BTreeMap;
 
 /// A binding's place in a language.
@@ -15,14 +15,68 @@ pub struct Place {
     pub place: String,
 }
 
-/// What languages tell apart.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+/// What a shader binds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A uniform buffer.
     Uniform,
-    Storage { writes: bool },
+    /// A storage buffer.
+    Storage {
+        /// Whether the shader may write it.
+        writes: bool,
+    },
+    /// A texture that is sampled or loaded.
     Texture,
-    StorageTexture { writes: bool },
+    /// A texture whose texels are written, or read one by one.
+    StorageTexture {
+        /// Whether the shader may write it.
+        writes: bool,
+    },
+    /// A sampler.
     Sampler,
+}
+
+impl Kind {
+    /// Returns WebGPU's word for it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Storage { writes: true } => "storage",
+            Self::Storage { writes: false } => "read-only-storage",
+            Self::Texture => "texture",
+            Self::StorageTexture { .. } => "storage-texture",
+            Self::Sampler => "sampler",
+        }
+    }
+}
+
+/// A binding of a shader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bound {
+    /// Number of the group.
+    pub group: u32,
+    /// Number within the group.
+    pub binding: u32,
+    /// Name in WGSL.
+    pub name: String,
+    /// What is bound.
+    pub kind: Kind,
+    /// Its type in the module.
+    pub ty: Handle<Type>,
+}
+
+/// Returns a shader's bindings, by group and number.
+#[must_use]
+pub fn bindings(module: &Module) -> Vec<Bound> {
+    let bound = module.global_variables.iter().filter_map(|(_, variable)| {
+        let at = variable.binding?;
+        let name = variable.name.clone().unwrap_or_default();
+        Some(Bound { group: at.group, binding: at.binding, name, kind: kind(module, variable), ty: variable.ty })
+    });
+    let mut bound: Vec<Bound> = bound.collect();
+    bound.sort_by_key(|bound| (bound.group, bound.binding));
+    bound
 }
 
 fn kind(module: &Module, variable: &GlobalVariable) -> Kind {

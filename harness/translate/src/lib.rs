@@ -20,6 +20,7 @@ mod names;
 mod settled;
 mod shader;
 
+pub use bindings::{Bound, Kind as BindingKind, bindings};
 pub use library::library;
 pub use shader::{shader, spirv};
 

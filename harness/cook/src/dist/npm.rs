@@ -3,9 +3,9 @@
 use super::DistError;
 use crate::cookbook::{marks, modules};
 use lapidary_specialise::layout::StructLayout;
-use lapidary_translate::{Language, TranslateError, library};
+use lapidary_translate::{Bound, Language, TranslateError, bindings, library};
 use lapidary_wgsl::RECIPES;
-use naga::{AddressSpace, ImageClass, Module, StorageAccess, TypeInner};
+use naga::{Module, TypeInner};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -69,28 +69,16 @@ fn recipe_module(source: &str, ir: &Module) -> [String; 2] {
         })
         .collect();
     let overrides: Vec<&str> = ir.overrides.iter().filter_map(|(_, it)| it.name.as_deref()).collect();
-    let mut bindings: Vec<(u32, u32, Value)> = Vec::new();
-    for (_, variable) in ir.global_variables.iter() {
-        let Some(at) = variable.binding else { continue };
-        let ty = &ir.types[variable.ty];
-        let kind = match (variable.space, &ty.inner) {
-            (AddressSpace::Uniform, _) => "uniform",
-            (AddressSpace::Storage { access }, _) if access.contains(StorageAccess::STORE) => "storage",
-            (AddressSpace::Storage { .. }, _) => "read-only-storage",
-            (_, TypeInner::Sampler { .. }) => "sampler",
-            (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => "storage-texture",
-            _ => "texture",
-        };
+    let row = |bound: Bound| {
+        let ty = &ir.types[bound.ty];
         let of = match ty.inner {
             TypeInner::Array { base, .. } => ir.types[base].name.as_deref(),
             _ => ty.name.as_deref(),
         };
-        let row =
-            json!({ "group": at.group, "binding": at.binding, "name": variable.name, "kind": kind, "struct": of });
-        bindings.push((at.group, at.binding, row));
-    }
-    bindings.sort_by_key(|(group, binding, _)| (*group, *binding));
-    let used: Vec<&str> = bindings.iter().filter_map(|(_, _, row)| row["struct"].as_str()).collect();
+        json!({ "group": bound.group, "binding": bound.binding, "name": bound.name, "kind": bound.kind.name(), "struct": of })
+    };
+    let bindings: Vec<Value> = bindings(ir).into_iter().map(row).collect();
+    let used: Vec<&str> = bindings.iter().filter_map(|row| row["struct"].as_str()).collect();
     let layouts: BTreeMap<&str, Value> = StructLayout::all(ir)
         .filter(|(name, _)| used.contains(name))
         .map(|(name, layout)| {
@@ -102,7 +90,6 @@ fn recipe_module(source: &str, ir: &Module) -> [String; 2] {
             (name, json!({ "size": layout.size, "fields": fields }))
         })
         .collect();
-    let bindings: Vec<Value> = bindings.into_iter().map(|(_, _, row)| row).collect();
     let layouts = json!(layouts);
     let code = format!(
         "export const wgsl = {};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {layouts:#};\n",

@@ -18,6 +18,8 @@ mod deferred;
 mod diffusion;
 mod dispatch;
 mod effects_off;
+mod engines;
+mod environment_harmonics;
 mod footprint;
 mod formulas;
 
@@ -25,6 +27,7 @@ mod frame;
 mod furnace;
 mod gem;
 mod hard_cases;
+mod host;
 mod instances;
 mod lamp_inside;
 mod languages;

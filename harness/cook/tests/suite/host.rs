@@ -1,0 +1,61 @@
+//! The pages for hosts: generated from the recipes and from frames, whose sizes their formulas give.
+
+use lapidary_cook::cookbook::marks;
+use lapidary_cook::host;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// `./cook test --refresh` rewrites them.
+#[test]
+fn the_pages_are_those_of_the_recipes_and_frames() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/recipes");
+    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
+    let is_refreshing = std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some();
+    if is_refreshing {
+        std::fs::create_dir_all(&folder).expect("a folder");
+    }
+    for (name, text) in &pages {
+        let path = folder.join(name);
+        if std::fs::read_to_string(&path).is_ok_and(|written| written == *text) {
+            continue;
+        }
+        assert!(is_refreshing, "docs/recipes/{name}: ./cook test --refresh");
+        std::fs::write(&path, text).expect("written");
+    }
+    let names: BTreeSet<&str> = pages.iter().map(|(name, _)| name.as_str()).collect();
+    for entry in std::fs::read_dir(&folder).expect("a folder") {
+        let name = entry.expect("an entry").file_name();
+        assert!(
+            name.to_str().is_some_and(|name| names.contains(name)),
+            "docs/recipes/{}: of no recipe",
+            name.display()
+        );
+    }
+}
+
+/// A page that left out a binding, a member or an override would pass unnoticed.
+#[test]
+fn every_binding_struct_and_override_stands_on_its_page() {
+    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
+    for recipe in lapidary_wgsl::RECIPES {
+        let (_, page) = pages.iter().find(|(name, _)| *name == format!("{}.md", recipe.name)).expect("a page");
+        // Without what none of its entry points reaches.
+        let source = marks::without(recipe, &[]).unwrap_or_else(|fault| panic!("{}", fault.message));
+        for line in source.lines() {
+            let code = line.split("//").next().unwrap_or_default();
+            if let Some((_, rest)) = code.split_once("@binding(") {
+                let name = rest.split(':').next().and_then(|rest| rest.rsplit(' ').next()).expect("a name");
+                let row = page
+                    .lines()
+                    .find(|row| row.contains(&format!("| `{name}` |")))
+                    .unwrap_or_else(|| panic!("{}: {name}", recipe.name));
+                // A size and, but for plain names, a comment.
+                assert!(!row.contains("| – |"), "{}: `{name}` has no size: {row}", recipe.name);
+            }
+            if let Some(rest) = code.strip_prefix("override ") {
+                let name = rest.split(':').next().expect("a name");
+                assert!(page.contains(&format!("| `{name}` |")), "{}: {name}", recipe.name);
+            }
+        }
+    }
+}
