@@ -83,7 +83,8 @@ const REFRESHING: [(&str, &str); 4] = [
     ("INSTA_FORCE_PASS", "1"),
 ];
 /// Tests that can write.
-const GENERATED: [&str; 5] = ["engines::the_shaders", "host::the_pages", "releases::", "text::", "user_file::the_page_shows"];
+const GENERATED: [&str; 5] =
+    ["engines::the_shaders", "host::the_pages", "releases::", "text::", "user_file::the_page_shows"];
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let root = repository::required("test")?;

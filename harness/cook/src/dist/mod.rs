@@ -5,8 +5,8 @@ pub mod npm;
 use crate::cookbook::{marks, modules};
 use crate::folder::{self, FolderError, Owner};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
-use lapidary_wgsl::RECIPES;
-use naga::ShaderStage;
+use lapidary_wgsl::{RECIPES, Recipe};
+use naga::{Module, ShaderStage};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -55,8 +55,9 @@ pub struct Written {
 /// Returns an error if the file system fails, or if `out` contains anything that an earlier call did
 /// not write.
 pub fn write(out: &Path) -> Result<Written, DistError> {
-    let mut files = texts()?;
-    files.extend(npm::files()?.into_iter().map(|(name, bytes)| (format!("npm/{name}"), bytes)));
+    let recipes = RECIPES.iter().map(Whole::of).collect::<Result<Vec<_>, _>>()?;
+    let mut files = texts(&recipes)?;
+    files.extend(npm::files(&recipes)?.into_iter().map(|(name, bytes)| (format!("npm/{name}"), bytes)));
     files.push(("README.md".to_owned(), readme(&files).into_bytes()));
     for (name, text) in [
         ("LICENSE-MIT-0", include_str!("../../../../LICENSE-MIT-0")),
@@ -91,8 +92,47 @@ pub const fn folder_of(language: Language) -> &'static str {
     }
 }
 
+/// A recipe without marks.
+pub struct Whole {
+    /// The recipe.
+    pub recipe: &'static Recipe,
+    /// Its whole text.
+    pub source: String,
+    /// The same for naga.
+    pub ir: Module,
+    /// The entry points that GLSL ES can say, each with its stage and its text.
+    pub glsl_es: Vec<(String, ShaderStage, String)>,
+}
+
+impl Whole {
+    fn of(recipe: &'static Recipe) -> Result<Self, DistError> {
+        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
+        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
+        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
+        let mut glsl_es = Vec::new();
+        for point in &ir.entry_points {
+            match shader(&source, recipe.name, Language::GlslEs, Some(&point.name)) {
+                Ok(text) => glsl_es.push((point.name.clone(), point.stage, text)),
+                // The index says so.
+                Err(TranslateError::Lacks { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(Self { recipe, source, ir, glsl_es })
+    }
+}
+
+/// Returns the extension of an entry point's file, as glslang has it.
+const fn extension_of(stage: ShaderStage) -> &'static str {
+    match stage {
+        ShaderStage::Vertex => "vert",
+        ShaderStage::Compute => "comp",
+        _ => "frag",
+    }
+}
+
 /// Returns every text with its path.
-fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
+fn texts(recipes: &[Whole]) -> Result<Vec<(String, Vec<u8>)>, DistError> {
     let mut files = Vec::new();
     files.push(("wesl/wesl.toml".to_owned(), WESL.as_bytes().to_vec()));
     for module in modules() {
@@ -104,36 +144,23 @@ fn texts() -> Result<Vec<(String, Vec<u8>)>, DistError> {
             files.push((path, library(module.source, module.name, language)?.into_bytes()));
         }
     }
-    for recipe in RECIPES {
-        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
-        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
-        files.push((format!("wgsl/recipes/{}.wgsl", recipe.name), source.as_bytes().to_vec()));
-        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
-        for language in Language::ALL {
-            let folder = folder_of(language);
-            if !language.is_glsl() {
-                let path = format!("{folder}/recipes/{}.{}", recipe.name, language.extension());
-                files.push((path, shader(&source, recipe.name, language, None)?.into_bytes()));
-                continue;
-            }
-            for point in &ir.entry_points {
-                let stage = match point.stage {
-                    ShaderStage::Vertex => "vert",
-                    ShaderStage::Compute => "comp",
-                    _ => "frag",
-                };
-                match shader(&source, recipe.name, language, Some(&point.name)) {
-                    Ok(text) => {
-                        let path = format!("{folder}/recipes/{}.{}.{stage}", recipe.name, point.name);
-                        files.push((path, text.into_bytes()));
-                    }
-                    // The index says so.
-                    Err(TranslateError::Lacks { .. }) if language == Language::GlslEs => {}
-                    Err(error) => return Err(error.into()),
-                }
-            }
+    for Whole { recipe, source, ir, glsl_es } in recipes {
+        let name = recipe.name;
+        files.push((format!("wgsl/recipes/{name}.wgsl"), source.as_bytes().to_vec()));
+        for language in [Language::Hlsl, Language::Msl] {
+            let path = format!("{}/recipes/{name}.{}", folder_of(language), language.extension());
+            files.push((path, shader(source, name, language, None)?.into_bytes()));
         }
-        files.push((format!("spirv/recipes/{}.spv", recipe.name), spirv(&ir).map_err(failed)?));
+        for point in &ir.entry_points {
+            let path = format!("glsl/recipes/{name}.{}.{}", point.name, extension_of(point.stage));
+            files.push((path, shader(source, name, Language::Glsl, Some(&point.name))?.into_bytes()));
+        }
+        for (entry, stage, text) in glsl_es {
+            let path = format!("glsl-es/recipes/{name}.{entry}.{}", extension_of(*stage));
+            files.push((path, text.as_bytes().to_vec()));
+        }
+        let binary = spirv(ir).map_err(|message| DistError::Recipe { recipe: name, message })?;
+        files.push((format!("spirv/recipes/{name}.spv"), binary));
     }
     Ok(files)
 }

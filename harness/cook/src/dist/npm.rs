@@ -1,11 +1,10 @@
 //! An npm package: the modules and recipes as strings, with types, and what runs a frame.
 
-use super::DistError;
-use crate::cookbook::{marks, modules};
+use super::{DistError, Whole};
+use crate::cookbook::modules;
 use lapidary_specialise::layout::StructLayout;
-use lapidary_translate::{Bound, Language, TranslateError, bindings, library};
-use lapidary_wgsl::RECIPES;
-use naga::{Module, TypeInner};
+use lapidary_translate::{Bound, Language, bindings, library};
+use naga::TypeInner;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -16,7 +15,7 @@ pub const NAME: &str = "lapidary-shaders";
 ///
 /// # Errors
 /// Returns an error if a text cannot be translated.
-pub fn files() -> Result<Vec<(String, Vec<u8>)>, DistError> {
+pub fn files(recipes: &[Whole]) -> Result<Vec<(String, Vec<u8>)>, DistError> {
     let mut files = vec![
         ("package.json".to_owned(), PACKAGE.replace("VERSION", env!("CARGO_PKG_VERSION")).replace("NAME", NAME)),
         ("README.md".to_owned(), README.to_owned()),
@@ -37,13 +36,10 @@ pub fn files() -> Result<Vec<(String, Vec<u8>)>, DistError> {
         files.push((format!("{folder}/index.js"), index.clone()));
         files.push((format!("{folder}/index.d.ts"), index));
     }
-    for recipe in RECIPES {
-        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
-        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
-        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
-        let [code, types] = recipe_module(&source, &ir);
-        files.push((format!("recipes/{}.js", recipe.name), code));
-        files.push((format!("recipes/{}.d.ts", recipe.name), types));
+    for whole in recipes {
+        let [code, types] = recipe_module(whole);
+        files.push((format!("recipes/{}.js", whole.recipe.name), code));
+        files.push((format!("recipes/{}.d.ts", whole.recipe.name), types));
     }
     Ok(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
 }
@@ -55,7 +51,7 @@ fn constant(source: &str) -> String {
 
 /// Returns a module of JavaScript with a recipe, its entry points, overrides, bindings and layouts, and its types, in
 /// which the layouts are literal.
-fn recipe_module(source: &str, ir: &Module) -> [String; 2] {
+fn recipe_module(Whole { source, ir, glsl_es, .. }: &Whole) -> [String; 2] {
     let stages: BTreeMap<&str, &str> = ir
         .entry_points
         .iter()
@@ -91,9 +87,12 @@ fn recipe_module(source: &str, ir: &Module) -> [String; 2] {
         })
         .collect();
     let layouts = json!(layouts);
+    let glsl_es: BTreeMap<&str, &str> =
+        glsl_es.iter().map(|(entry, _, text)| (entry.as_str(), text.as_str())).collect();
     let code = format!(
-        "export const wgsl = {};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {layouts:#};\n",
-        Value::from(source),
+        "export const wgsl = {};\nexport const glslEs = {:#};\nexport const entryPoints = {:#};\nexport const overrides = {:#};\nexport const bindings = {:#};\nexport const layouts = {layouts:#};\n",
+        Value::from(source.as_str()),
+        json!(glsl_es),
         json!(stages),
         json!(overrides),
         json!(bindings),
@@ -106,6 +105,9 @@ const TEXT_TYPES: &str = "declare const text: string;\nexport default text;\n";
 const RECIPE_TYPES: &str = "\
 /** A whole shader; its overrides named EFFECT_… switch effects on and off. */
 export const wgsl: string;
+/** The entry points that GLSL ES 3.00 can say, each a whole shader; those that need storage buffers or compute are
+ *  not among them. */
+export const glslEs: Record<string, string>;
 /** The stage of each entry point. */
 export const entryPoints: Record<string, 'vertex' | 'fragment' | 'compute'>;
 /** Names for a pipeline's `constants`. */
