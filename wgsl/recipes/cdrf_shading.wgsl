@@ -29,9 +29,9 @@ override EFFECT_SECOND_LOBE: bool = false;
 // and 1, or a diffuseTransmissionTexture, on a body that cdrf draws.
 override EFFECT_PARTIAL_TRANSMISSION: bool = false;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
-// texture_irradiance and texture_diffusion.
+// texture_irradiance and blur_texture.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;
-// Bodies cast shadows on one another and on themselves: the recipe reflective_shadow_map draws each
+// Bodies cast shadows on one another and on themselves: the recipe draw_light_map draws each
 // light's view beforehand. Called for by bodies that may stand in the light.
 override EFFECT_SHADOW: bool = false;
 // Light from all around, in addition to the lights. Called for by an environment.

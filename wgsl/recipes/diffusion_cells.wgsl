@@ -7,7 +7,7 @@
 //
 // Clear `filled`, `surfaces`, `entering`, `nodes`, `faces`, `reactions` and the count of `large`; what holds no
 // matter stays so.
-// After the recipe voxelization has filled a grid of twice the cells along each edge:
+// After the recipe voxelize has filled a grid of twice the cells along each edge:
 // 1. `diffusion_cells_fill`, one workgroup of 64 per row of words: (words, cells, cells) / 64.
 // 2. `diffusion_cells_list`, one invocation per tile of 4 x 4 x 4 voxels; `workgroups` begins as (0, 1, 1).
 // 3. `diffusion_cells_surface`, one invocation per triangle; `diffusion_cells_large`, any number of

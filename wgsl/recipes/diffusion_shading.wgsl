@@ -5,7 +5,7 @@
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection, diffusion_nodes, diffusion_packed
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
-// voxelization, diffusion_cells, reflective_shadow_map, diffusion_source and diffusion_solve.
+// voxelize, diffusion_cells, draw_light_map, diffusion_source and diffusion_solve.
 
 // Light through the body. If off, only light that falls on the surface itself is sent back. Called for
 // by extras.lapidary.scattering and absorption.

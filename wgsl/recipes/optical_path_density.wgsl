@@ -4,7 +4,7 @@
 // requires: veins, voxelization
 // parts: matter, tiles
 //
-// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds. For
+// Dispatch with (1, cells, cells) workgroups after the recipe voxelize, and before the seeds. For
 // diffusion, dispatch optical_path_density_listed between diffusion_cells_list and diffusion_cells_finish, a
 // workgroup for each tile that holds matter.
 

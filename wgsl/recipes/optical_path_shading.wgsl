@@ -6,7 +6,7 @@
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection, scattering_law
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
-// voxelization, reflective_shadow_map, optical_path_seed and a solver have filled the costs.
+// voxelize, draw_light_map, optical_path_seed and a solver have filled the costs.
 
 // Light through the body. If off, only light that falls on the surface itself is reflected
 // diffusely. Called for by extras.lapidary.scattering and absorption.

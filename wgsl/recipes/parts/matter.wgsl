@@ -1,4 +1,4 @@
-// matter: which voxels of a grid are filled, a bit for each, as the recipe voxelization leaves them.
+// matter: which voxels of a grid are filled, a bit for each, as the recipe voxelize leaves them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //

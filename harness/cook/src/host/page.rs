@@ -64,6 +64,9 @@ fn size(recipe: &str, row: &Row) -> String {
 pub(super) fn of(described: &Description, uses: &[&Use]) -> String {
     let name = described.name;
     let mut page = format!("# {name}: what a host binds and runs\n\n{ORIGIN}\n\n{}\n\n", sentence(&described.purpose));
+    if !described.text.is_empty() {
+        let _ = writeln!(page, "{}\n", described.text);
+    }
     let modules: Vec<String> = described.requires.iter().map(|module| format!("[{module}](../{module}.md)")).collect();
     if !modules.is_empty() {
         let _ = writeln!(page, "Modules: {}.\n", modules.join(", "));

@@ -11,6 +11,8 @@ use std::collections::BTreeSet;
 pub(super) struct Description {
     pub(super) name: &'static str,
     pub(super) purpose: String,
+    /// What its header says further.
+    pub(super) text: String,
     pub(super) requires: Vec<&'static str>,
     pub(super) entries: Vec<Entry>,
     pub(super) bindings: Vec<Row>,
@@ -120,6 +122,7 @@ impl Description {
         Ok(Self {
             name: recipe.name,
             purpose: purpose.to_owned(),
+            text: header(recipe.source),
             requires: recipe.requires(),
             entries: entries.collect(),
             bindings: rows,
@@ -127,6 +130,13 @@ impl Description {
             overrides: overrides.collect(),
         })
     }
+}
+
+/// Returns what a recipe's header says below the lines that name its source and parts, as Markdown.
+fn header(source: &str) -> String {
+    let lines = source.lines().take_while(|line| line.starts_with("//"));
+    let below = lines.skip_while(|line| *line != "//").skip(1).map(|line| line.trim_start_matches('/'));
+    below.map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n")
 }
 
 /// Returns the text of a comment's lines.

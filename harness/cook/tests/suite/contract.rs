@@ -392,6 +392,33 @@ fn reachable_globals(ir: &naga::Module, function: &naga::Function) -> Vec<naga::
     found
 }
 
+/// A comment that says which recipe comes before or after names one that there is.
+#[test]
+fn recipes_named_in_comments_exist() {
+    let texts = RECIPES.iter().map(|recipe| recipe.source).chain(lapidary_wgsl::PARTS.iter().map(|part| part.source));
+    let mut named = 0;
+    for text in texts {
+        let comments: Vec<&str> = text.lines().filter_map(|line| Some(line.split_once("//")?.1.trim())).collect();
+        let comments = comments.join(" ");
+        for (at, word) in comments.match_indices("recipe ").chain(comments.match_indices("recipes ")) {
+            for name in comments[at + word.len()..].split([' ', ',']).filter(|name| !["", "and"].contains(name)) {
+                let name = name.trim_matches(['`', '.', ':', ';', ')', '\'']);
+                let is_name = name.contains('_') || lapidary_wgsl::module(name).is_some();
+                if !is_name {
+                    break;
+                }
+                assert!(
+                    lapidary_wgsl::recipe(name).is_some(),
+                    "`{name}` is no recipe: {}",
+                    text.lines().next().unwrap_or_default()
+                );
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 10, "{named}");
+}
+
 #[test]
 fn wrong_marks_are_found() {
     let known = ["fog".to_owned()];
