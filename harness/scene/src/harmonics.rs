@@ -10,25 +10,33 @@ use std::f64::consts::PI;
 /// Number of coefficients: 1 of degree 0, 3 of 1, 5 of 2, 9 of 4.
 pub const COUNT: usize = 18;
 
-/// Rows of the grid of directions, from pole to pole; there are twice as many columns. The studio's
-/// sharpest edge is 3° wide, or 5 rows.
-const ROWS: u32 = 256;
+/// Columns and rows of the grid of directions, at least. The studio's sharpest edge is 3° wide, or 5 rows.
+const LEAST: [u32; 2] = [512, 256];
 
 /// Weight of a clamped cosine for each harmonic of degrees 0, 1, 2 and 4, and the number of
 /// harmonics of that degree.
 const WEIGHTS: [(f64, usize); 4] = [(PI, 1), (2.0 * PI / 3.0, 3), (PI / 4.0, 5), (-PI / 24.0, 9)];
 
+/// Returns the columns and rows of the grid for an environment: every texel of an image is met, in its middle, or
+/// as often as others.
+fn grid(environment: &Environment) -> [u32; 2] {
+    let Environment::Map(map) = environment else { return LEAST };
+    let [width, height] = [map.width.max(1), map.height.max(1)];
+    [width * LEAST[0].div_ceil(width), height * LEAST[1].div_ceil(height)]
+}
+
 /// Returns the coefficients, linear RGB, by degree and order.
 #[must_use]
 pub fn project(environment: &Environment) -> [DVec3; COUNT] {
+    let [columns, rows] = grid(environment);
     let row = |row: u32| {
-        let v = (f64::from(row) + 0.5) / f64::from(ROWS);
+        let v = (f64::from(row) + 0.5) / f64::from(rows);
         // The exact solid angle of a cell: dz dφ.
-        let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(ROWS)).cos());
-        let solid_angle = (edges[0] - edges[1]) * PI / f64::from(ROWS);
+        let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(rows)).cos());
+        let solid_angle = (edges[0] - edges[1]) * 2.0 * PI / f64::from(columns);
         let mut sums = [DVec3::ZERO; COUNT];
-        for column in 0..2 * ROWS {
-            let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v);
+        for column in 0..columns {
+            let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(columns), v);
             let direction = oracle::direction_from_uv(uv);
             let arriving = solid_angle * environment.radiance(direction);
             for (sum, value) in sums.iter_mut().zip(basis(direction)) {
@@ -38,8 +46,8 @@ pub fn project(environment: &Environment) -> [DVec3; COUNT] {
         sums
     };
     // Rows are summed in order, so the sums do not depend on the number of threads.
-    let rows: Vec<[DVec3; COUNT]> = (0..ROWS).into_par_iter().map(row).collect();
-    rows.into_iter().fold([DVec3::ZERO; COUNT], |all, row| std::array::from_fn(|k| all[k] + row[k]))
+    let sums: Vec<[DVec3; COUNT]> = (0..rows).into_par_iter().map(row).collect();
+    sums.into_iter().fold([DVec3::ZERO; COUNT], |all, row| std::array::from_fn(|k| all[k] + row[k]))
 }
 
 /// Returns the irradiance, linear RGB, on a surface with this unit normal from which nothing hides
@@ -131,6 +139,20 @@ mod tests {
             let found = irradiance(&coefficients, normal);
             let expected = PI * (DVec3::ONE + normal / 3.0);
             assert!(found.abs_diff_eq(expected, 2e-3), "{normal}: {found}, not {expected}");
+        }
+    }
+
+    /// A sun of one texel counts by its solid angle, wherever it is in a large image.
+    #[test]
+    fn no_texel_of_a_large_image_is_missed() {
+        let (width, height) = (2048u32, 1024u32);
+        for place in [[700u32, 300u32], [701, 301], [702, 303]] {
+            let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize];
+            pixels[(place[1] * width + place[0]) as usize] = [1e4, 1e4, 1e4, 1.0];
+            let found = project(&Environment::Map(EnvironmentMap { width, height, pixels }))[0].x;
+            let edges = [place[1], place[1] + 1].map(|row| (PI * f64::from(row) / f64::from(height)).cos());
+            let expected = 1e4 * (edges[0] - edges[1]) * 2.0 * PI / f64::from(width) * (0.25 / PI).sqrt();
+            assert!((found / expected - 1.0).abs() < 1e-3, "{place:?}: {found}, not {expected}");
         }
     }
 
