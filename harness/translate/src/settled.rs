@@ -240,8 +240,11 @@ impl Parser<'_> {
     }
 }
 
+/// An operator, and whether it holds of two numbers.
+type Comparison = (&'static str, fn(i64, i64) -> bool);
+
 /// Longer ones before those that they begin with.
-const COMPARISONS: [(&str, fn(i64, i64) -> bool); 6] = [
+const COMPARISONS: [Comparison; 6] = [
     ("==", |left, right| left == right),
     ("!=", |left, right| left != right),
     ("<=", |left, right| left <= right),

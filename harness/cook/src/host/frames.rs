@@ -93,8 +93,11 @@ pub(super) struct Step {
     pub(super) times: u32,
 }
 
-/// Returns what the frames do with the recipes, and the steps of each frame.
-pub(super) fn all(described: &[Description]) -> Result<(Vec<Use>, Vec<(&'static str, Vec<Step>)>), HostError> {
+/// A frame's command, and its steps.
+pub(super) type Listed = (&'static str, Vec<Step>);
+
+/// Returns what the frames do with the recipes, and the steps of those that are listed.
+pub(super) fn all(described: &[Description]) -> Result<(Vec<Use>, Vec<Listed>), HostError> {
     let mut uses: Vec<Use> = Vec::new();
     let mut frames = Vec::new();
     for example in &EXAMPLES {
@@ -173,7 +176,7 @@ impl Reader<'_> {
             let entries = step.entries.join(", ");
             let is_same =
                 |last: &&mut Step| last.pass == step.pass && last.entries == entries && last.count == step.count;
-            if steps.last_mut().as_ref().is_none_or(|last| !is_same(&last)) {
+            if steps.last_mut().as_ref().is_none_or(|last| !is_same(last)) {
                 let (recipe, count) = (step.recipe.clone(), step.count.clone());
                 steps.push(Step { pass: step.pass.clone(), recipe, entries, count, times });
             }
@@ -241,17 +244,14 @@ impl Reader<'_> {
                 if let Bound::Buffer(_) = bound {
                     self.check(pipeline, row, resource, &numbers)?;
                 }
-                match (&*row.name, &resource.kind) {
-                    ("maps", ResourceKind::Texture { size, .. }) => {
-                        (all.texels, all.views) = (size[0].into(), size[2].into());
-                    }
-                    _ => {}
+                if let ("maps", ResourceKind::Texture { size, .. }) = (&*row.name, &resource.kind) {
+                    (all.texels, all.views) = (size[0].into(), size[2].into());
                 }
                 if numbers.vertices > 0 {
                     (all.vertices, all.triangles, all.halo) = (numbers.vertices, numbers.triangles, numbers.halo);
                 }
                 // The grid of what a dispatch lists or fills; a coarser level's own bindings come in group 1.
-                if numbers.n > 0 && (all.n == 0 || row.name == "tiles") && group.group == 0 || all.n == 0 {
+                if all.n == 0 || numbers.n > 0 && row.name == "tiles" && group.group == 0 {
                     all.n = numbers.n;
                 }
             }

@@ -1,6 +1,6 @@
 //! The pages as Markdown.
 
-use super::frames::{Step, Use};
+use super::frames::{Listed, Use};
 use super::recipe::{Description, Row};
 use super::sizes::{self, Rule};
 use lapidary_translate::BindingKind;
@@ -156,7 +156,7 @@ pub(super) fn row(described: &Description, uses: &[&Use]) -> Vec<String> {
 }
 
 /// Returns the page of all recipes.
-pub(super) fn index(rows: Vec<Vec<String>>, frames: &[(&'static str, Vec<Step>)]) -> String {
+pub(super) fn index(rows: Vec<Vec<String>>, frames: &[Listed]) -> String {
     let mut page = format!("# Recipes, for a host\n\n{ORIGIN}\n\n{INTRODUCTION}");
     table(&mut page, &["recipe", "what it draws or computes", "passes"], rows);
     page.push_str(FRAMES);
