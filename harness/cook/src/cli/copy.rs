@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Bindings of a recipe to declare as private variables instead: your own stage sets them, from what
-    /// it has already, before it calls a function. BINDING[LENGTH] for an array without a length.
+    /// it has already, before it calls a function. `BINDING[LENGTH]` for an array without a length.
     #[arg(long, value_delimiter = ',', value_name = "BINDING")]
     private: Vec<String>,
     /// Puts all bindings of a recipe into this group, numbered from 0: a number, a constant's name, or what
