@@ -59,3 +59,33 @@ fn every_binding_struct_and_override_stands_on_its_page() {
         }
     }
 }
+
+/// The tables that people have written say no other sizes.
+#[test]
+fn the_written_tables_have_the_recipes_sizes() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
+    let mut count = 0;
+    for (page, start) in
+        [("gem", "gem"), ("cdrf_shading", "cdrf_shading"), ("optical_path_shading", "optical_path_shading")]
+    {
+        let text = std::fs::read_to_string(docs.join(format!("{page}.md"))).expect("a page");
+        for row in text.lines().filter(|line| line.starts_with("| ")) {
+            // `name`, storage, 48 bytes each
+            let Some((before, _)) = row.split_once(" bytes") else { continue };
+            let Some((rest, bytes)) = before.rsplit_once(", ") else { continue };
+            let Ok(bytes) = bytes.parse::<u32>() else { continue };
+            let name = rest.split('`').rev().nth(1).expect("a name in backquotes");
+            let sizes = pages.iter().filter(|(file, _)| file.starts_with(start)).filter_map(|(_, text)| {
+                let row = text.lines().find(|line| line.contains(&format!("| `{name}` | ")))?;
+                row.split(" | ").nth(4)?.split(' ').next()?.parse::<u32>().ok()
+            });
+            let sizes: Vec<u32> = sizes.collect();
+            // Of corners the page gives a corner's size, the recipe's a triangle's.
+            let has = |size: &u32| *size == bytes || name == "corners" && *size == 3 * bytes;
+            assert!(sizes.iter().any(has), "docs/{page}.md: `{name}` of {bytes} bytes, and the recipes have {sizes:?}");
+            count += 1;
+        }
+    }
+    assert!(count > 12, "{count} sizes");
+}
