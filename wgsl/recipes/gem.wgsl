@@ -40,6 +40,7 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     return closest_point_centre(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
 }
 
+// A corner of a triangle of the stone.
 @vertex
 fn gem_vertex(
     @builtin(vertex_index) vertex: u32,
@@ -103,6 +104,7 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     return GemHit(hit.point, normal, hit.distance, true);
 }
 
+// Radiance that the stone sends to the eye, linear, with an alpha of 1.
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_PROXY_GEOMETRY);  //+proxy_geometry

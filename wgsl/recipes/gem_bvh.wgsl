@@ -32,6 +32,7 @@ fn gem_face_normal(triangle: u32) -> vec3f {
     );
 }
 
+// A corner of a triangle of the stone.
 @vertex
 fn gem_vertex(
     @builtin(vertex_index) vertex: u32,
@@ -69,6 +70,7 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     return GemHit(ray.position + nearest.distance * ray.direction, -normal, nearest.distance, true);
 }
 
+// Radiance that the stone sends to the eye, linear, with an alpha of 1.
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_BVH_TRACE);  //+bvh_trace

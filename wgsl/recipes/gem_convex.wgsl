@@ -25,6 +25,7 @@ struct GemVertex {
     @location(3) @interpolate(flat, either) instance: u32,  //+instances
 }
 
+// A corner of a triangle of the stone.
 @vertex
 fn gem_vertex(
     @builtin(vertex_index) vertex: u32,
@@ -65,6 +66,7 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     return GemHit(convex_trace_point(ray.position, ray.direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
 
+// Radiance that the stone sends to the eye, linear, with an alpha of 1.
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);  //+convex_trace

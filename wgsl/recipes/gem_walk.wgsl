@@ -33,6 +33,7 @@ struct GemStone {
 @group(2) @binding(1) var<storage, read> face_of_triangle: array<u32>;
 // The cells' words and, behind them, further ones of cells with more than two candidates.
 @group(2) @binding(2) var<storage, read> facet_map: array<u32>;
+// The stone's place.
 @group(2) @binding(3) var<storage, read> stone: GemStone;
 
 struct GemVertex {
@@ -43,6 +44,7 @@ struct GemVertex {
     @location(3) @interpolate(flat, either) instance: u32,  //+instances
 }
 
+// A corner of a triangle of the stone.
 @vertex
 fn gem_vertex(
     @builtin(vertex_index) vertex: u32,
@@ -277,6 +279,7 @@ fn gem_seen(input: GemVertex) -> vec4f {
     return vec4f(radiance.surface, 1.0f);
 }
 
+// Radiance that the stone sends to the eye, linear, with an alpha of 1.
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     return gem_seen(input);

@@ -64,6 +64,7 @@ fn optical_path_list(tile: u32, pass_number: u32) {
     }
 }
 
+// Finds the matter of each tile, and lists those that hold a seed.
 @compute @workgroup_size(OPTICAL_PATH_GROUP)
 fn optical_path_tiles_begin(@builtin(global_invocation_id) invocation: vec3u) {
     let side = optical_path_tiles_side();
@@ -97,6 +98,7 @@ fn optical_path_tiles_begin(@builtin(global_invocation_id) invocation: vec3u) {
     }
 }
 
+// Makes the list of the next pass the one that is taken up, and writes how many workgroups it needs.
 @compute @workgroup_size(1)
 fn optical_path_tiles_next() {
     workgroups[0] = (optical_path_next() + OPTICAL_PATH_GROUP - 1u) / OPTICAL_PATH_GROUP;
@@ -414,6 +416,7 @@ fn optical_path_affected(bits: vec2u) -> u32 {
     return affected;
 }
 
+// Lowers the costs in a listed tile, and lists the tiles that its changes may lower.
 @compute @workgroup_size(OPTICAL_PATH_GROUP)
 fn optical_path_tiles_update(@builtin(global_invocation_id) invocation: vec3u) {
     let next = progress.step;

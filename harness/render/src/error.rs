@@ -120,7 +120,7 @@ pub enum RenderError {
     /// A material without the medium that a rung for light paths needs.
     #[error(
         "object `{object}`: its material `{material}` has no scattering and absorption, which rung `{rung}` needs; add \
-         extras.lapidary.scattering and .absorption, or take another rung"
+         extras.lapidary.scattering and .absorption, give it another --material, or take another rung"
     )]
     NoMedium {
         /// Name of the object.

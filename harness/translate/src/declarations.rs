@@ -22,6 +22,13 @@ impl<'a> Declaration<'a> {
         &self.lines[..length]
     }
 
+    /// Whether it is one of these functions.
+    #[must_use]
+    pub fn is_function_of(&self, names: &[&str]) -> bool {
+        let mut named = self.lines.iter().filter_map(|line| words(line.strip_prefix("fn ")?).next());
+        named.any(|name| names.contains(&name))
+    }
+
     /// Whether it is a comment with a licence, which heads what follows.
     #[must_use]
     pub fn is_header(&self) -> bool {
@@ -150,11 +157,7 @@ pub fn of_functions(source: &str, wanted: &[&str]) -> Option<String> {
     }
     let lines: Vec<&str> = source.lines().filter(|line| !line.starts_with("// Version:")).collect();
     let declarations = declarations(&lines);
-    let is_root = |declaration: &Declaration<'_>| {
-        let mut named = declaration.lines.iter().filter_map(|line| words(line.strip_prefix("fn ")?).next());
-        named.any(|name| wanted.contains(&name))
-    };
-    let needed = reached(&declarations, is_root);
+    let needed = reached(&declarations, |declaration| declaration.is_function_of(wanted));
     Some(text_of(&declarations, &needed).trim_end().to_owned() + "\n")
 }
 

@@ -6,17 +6,22 @@ use crate::settled::settled;
 use naga::valid::TypeFlags;
 
 /// Returns the text with constants in place of these overrides, without the branches that they rule out. A
-/// value is written as in WGSL, without a suffix: `true`, `8`, `0.5`.
+/// value is written as in WGSL, without a suffix: `true`, `8`, `0.5`. Functions that no entry point reaches
+/// any more go, but for those of `wanted`.
 ///
 /// # Errors
 /// Returns an error if the text has no such override, or if a value is not of its type.
-pub fn with_constants(source: &str, values: &[(&str, &str)]) -> Result<String, TranslateError> {
+pub fn with_constants(source: &str, values: &[(&str, &str)], wanted: &[&str]) -> Result<String, TranslateError> {
     let known: Vec<&str> = source.lines().filter_map(|line| Some(override_of(line)?.0)).collect();
     if let Some((unknown, _)) = values.iter().find(|(name, _)| !known.contains(name)) {
         return Err(unknown_name("override", unknown, &known));
     }
     if values.is_empty() {
         return Ok(source.to_owned());
+    }
+    let is_second = |(at, (name, _)): &(usize, &(&str, &str))| values[..*at].iter().any(|(other, _)| other == name);
+    if let Some((_, (name, _))) = values.iter().enumerate().find(is_second) {
+        return Err(TranslateError::Fit(format!("`{name}` is set twice")));
     }
     let text = lines_of(source, |line| {
         let Some((name, ty)) = override_of(line) else { return Ok(line.to_owned()) };
@@ -26,7 +31,7 @@ pub fn with_constants(source: &str, values: &[(&str, &str)]) -> Result<String, T
             None => Err(TranslateError::Fit(format!("`{name}` is of type {ty}; `{value}` is no value of it"))),
         }
     })?;
-    Ok(settled(&text))
+    Ok(settled(&text, wanted))
 }
 
 /// Returns the text with private variables in place of these bindings: the host's own stage sets them
@@ -47,7 +52,10 @@ pub fn with_private(source: &str, names: &[&str]) -> Result<String, TranslateErr
         .filter_map(|(_, variable)| Some((variable.name.as_deref()?, info[variable.ty])))
         .collect();
     let names: Vec<(&str, Option<&str>)> = names.iter().map(|name| with_length(name)).collect();
-    for (name, length) in &names {
+    for (place, (name, length)) in names.iter().enumerate() {
+        if names[..place].iter().any(|(other, _)| other == name) {
+            return Err(TranslateError::Fit(format!("`{name}` is named twice")));
+        }
         let Some((_, flags)) = bound.iter().find(|(bound, _)| bound == name) else {
             let known: Vec<&str> = bound.iter().map(|(name, _)| *name).collect();
             return Err(unknown_name("binding", name, &known));
@@ -79,19 +87,15 @@ pub fn with_private(source: &str, names: &[&str]) -> Result<String, TranslateErr
         let ty = length.map_or(ty.to_owned(), |length| ty.replace(">;", &format!(", {length}>;")));
         Ok(format!("var<private> {name}:{ty}"))
     })?;
-    match lapidary_specialise::parse(&text, "the shader") {
-        Ok(_) => Ok(text),
-        // What is left to go wrong: only arrays without a length are asked for theirs.
-        Err(_) => Err(TranslateError::Fit(format!(
-            "the length of {} is asked for, which needs a buffer; leave it out",
-            names
-                .iter()
-                .filter(|(_, length)| length.is_some())
-                .map(|(name, _)| format!("`{name}`"))
-                .collect::<Vec<_>>()
-                .join(" or ")
-        ))),
+    // A variable has a length that the text must not ask for.
+    let asks = |name: &&(&str, Option<&str>)| name.1.is_some() && text.contains(&format!("arrayLength(&{})", name.0));
+    if let Some((name, _)) = names.iter().find(asks) {
+        return Err(TranslateError::Fit(format!(
+            "the length of `{name}` is asked for, which needs a buffer; leave it out"
+        )));
     }
+    lapidary_specialise::parse(&text, "the shader")?;
+    Ok(text)
 }
 
 /// Splits `name[length]`.
@@ -205,17 +209,17 @@ fn seen() -> vec4f {
 
     #[test]
     fn overrides_become_constants_of_their_type() {
-        let text = with_constants(TEXT, &[("STEPS", "8"), ("SCALE", "2")]).expect("set");
+        let text = with_constants(TEXT, &[("STEPS", "8"), ("SCALE", "2")], &[]).expect("set");
         for line in ["const STEPS: u32 = 8u;", "const SCALE: f32 = 2.0f;"] {
             assert!(text.contains(line), "{text}");
         }
         assert!(text.starts_with("// Number of steps.\nconst"), "{text}");
-        let on = with_constants(TEXT, &[("ON", "true")]).expect("set");
+        let on = with_constants(TEXT, &[("ON", "true")], &[]).expect("set");
         assert!(on.contains("    return SCALE *") && !on.contains("if (ON)") && !on.contains("view.eye"), "{on}");
         lapidary_specialise::parse(&text, "text").expect("valid");
-        assert_eq!(with_constants(TEXT, &[]).expect("as it was"), TEXT);
+        assert_eq!(with_constants(TEXT, &[], &[]).expect("as it was"), TEXT);
         for (name, value) in [("STEPS", "-1"), ("STEPS", "8u"), ("SCALE", "inf"), ("ON", "1"), ("STEP", "1")] {
-            with_constants(TEXT, &[(name, value)]).expect_err(value);
+            with_constants(TEXT, &[(name, value)], &[]).expect_err(value);
         }
     }
 

@@ -111,7 +111,7 @@ pub enum TranslateError {
         found: String,
     },
     /// The text declares nothing of this name.
-    #[error("no {what} `{name}`; there are {}", known.join(", "))]
+    #[error("no {what} `{name}`; there {}", if known.is_empty() { "is none".to_owned() } else { format!("are {}", known.join(", ")) })]
     NoSuch {
         /// "override" or "binding".
         what: &'static str,

@@ -4,16 +4,19 @@ use crate::declarations::{self, declarations, without_comment, words};
 use std::collections::HashMap;
 
 /// Returns the text without the branches that its constants rule out, and without the declarations that
-/// nothing reaches any more. The text must be formatted.
+/// neither entry points nor these functions reach any more. The text must be formatted.
 #[must_use]
-pub fn settled(source: &str) -> String {
+pub fn settled(source: &str, wanted: &[&str]) -> String {
     let constants: HashMap<&str, Value> = source.lines().filter_map(constant).collect();
     let lines: Vec<&str> = source.lines().collect();
     let folded = folded(&lines, &constants);
     let lines: Vec<&str> = folded.iter().map(String::as_str).collect();
     let declarations = declarations(&lines);
     let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
-    let needed = declarations::reached(&declarations, |declaration| declaration.is_entry || !has_entry);
+    let is_root = |declaration: &declarations::Declaration<'_>| {
+        declaration.is_entry || !has_entry || declaration.is_function_of(wanted)
+    };
+    let needed = declarations::reached(&declarations, is_root);
     declarations::text_of(&declarations, &needed)
 }
 
@@ -84,7 +87,9 @@ fn folded(lines: &[&str], constants: &HashMap<&str, Value>) -> Vec<String> {
                         && ["let ", "var ", "const "].iter().any(|start| line.trim().starts_with(start))
                 };
                 let braced = body.iter().any(declares);
-                let leaves = body.iter().rev().find(|line| indent(line) == margin + 4).is_some_and(|line| {
+                // A statement may take several lines, the last of which closes its brackets.
+                let begins = |line: &&String| indent(line) == margin + 4 && !line.trim().starts_with([')', ']', '}']);
+                let leaves = body.iter().rev().find(begins).is_some_and(|line| {
                     ["return", "break;", "continue;", "discard;"].iter().any(|start| line.trim().starts_with(start))
                 });
                 if braced {
@@ -95,7 +100,7 @@ fn folded(lines: &[&str], constants: &HashMap<&str, Value>) -> Vec<String> {
                     kept.extend(body.iter().map(|line| line.get(4..).unwrap_or_default().to_owned()));
                 }
                 if leaves {
-                    // What follows in this block is never reached, which WGSL's validators refuse.
+                    // What follows in this block is never reached.
                     while at < lines.len() && (lines[at].trim().is_empty() || indent(lines[at]) >= margin) {
                         at += 1;
                     }
@@ -336,7 +341,9 @@ fn main() -> @location(0) vec4f {
     }
 }
 ";
-        assert_eq!(settled(text), expected);
+        assert_eq!(settled(text, &[]), expected);
+        // A function that nothing calls stays if it is wanted.
+        assert!(settled(text, &["first"]).contains("fn first("));
         lapidary_specialise::parse(expected, "text").expect("valid");
     }
 }

@@ -90,14 +90,17 @@ struct GemInstance {
 }
 //+instances }
 
+// The camera.
 @group(0) @binding(0) var<uniform> view: GemView;
-// Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
+// The stone's material. Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
 // which costs megabytes per body.
 @group(1) @binding(0) var<storage, read> material: GemMaterial;
 // Three floats per vertex, in world space; with instances, in the stone's own space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
+// Those of form 2 of dispersion; one of any value otherwise.
 @group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
+// The copies, in the order of their draw; one of any value without the effect.
 @group(1) @binding(4) var<storage, read> instances: array<GemInstance>;  //+instances
 
 // The next facet that a ray meets inside the stone.

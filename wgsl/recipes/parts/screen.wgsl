@@ -21,6 +21,7 @@ struct ScreenView {
     thickness: f32,
 }
 
+// How the picture was drawn.
 @group(0) @binding(6) var<uniform> screen: ScreenView;
 // Linear radiance; alpha is 0 where no body is seen.
 @group(0) @binding(7) var screen_radiance: texture_2d<f32>;

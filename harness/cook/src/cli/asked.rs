@@ -79,6 +79,7 @@ impl Asked {
     /// Opens the scene, with the materials that were asked for.
     pub(super) fn open(&self) -> Result<Scene, Failure> {
         let mut scene = Scene::open(&self.scene)?;
+        refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
         // Those of single nodes come last, so that they count.
         let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
         for (node, preset) in all.into_iter().chain(single) {
@@ -97,15 +98,12 @@ impl Asked {
     /// Returns the rung that was asked for all objects, or each material's own by default, and those of
     /// single ones.
     fn rungs(&self, scene: &Scene) -> Result<(Rung, Vec<(String, Rung)>), Failure> {
+        refuse_twice("--rung", self.rung.iter().map(|(node, _)| node.as_deref()))?;
         let mut all = None;
         let mut single: Vec<(String, Rung)> = Vec::new();
         for (node, rung) in &self.rung {
             let Some(node) = node else {
-                if let Some(before) = all.replace(*rung) {
-                    return Err(Failure(format!(
-                        "--rung {before} and --rung {rung}: all objects have one; name a node"
-                    )));
-                }
+                all = Some(*rung);
                 continue;
             };
             refuse_unknown(scene, node, "--rung")?;
@@ -114,18 +112,13 @@ impl Asked {
                     "--rung {node}={rung}: the reference draws a whole scene; leave `{node}=` out, or take another rung"
                 )));
             }
-            let of_node = |object: &&Object| object.name == *node;
-            if rung.is_for_clear_stones()
-                && let Some(object) = scene.objects.iter().find(of_node)
-                && !object.material.is_clear()
-            {
+            // Nodes may share a name; a note tells of those that the rung is not for.
+            let mut of_node = scene.objects.iter().filter(|object| object.name == *node);
+            if rung.is_for_clear_stones() && of_node.clone().all(|object| !object.material.is_clear()) {
+                let material = of_node.next().map_or("", |object| &object.material.name);
                 return Err(Failure(format!(
-                    "--rung {node}={rung}: the rung is for clear stones, and `{node}` is of {}; take another",
-                    object.material.name
+                    "--rung {node}={rung}: the rung is for clear stones, and `{node}` is of {material}; take another"
                 )));
-            }
-            if single.iter().any(|(name, _)| name == node) {
-                return Err(Failure(format!("--rung names `{node}` twice; leave one out")));
             }
             single.push((node.clone(), *rung));
         }
@@ -166,6 +159,13 @@ impl Asked {
         let (width, height) = self.size;
         let (rung, rungs) = self.rungs(scene)?;
         let quality = self.quality.unwrap_or_default();
+        let is_chosen =
+            |object: &Object| rung == Rung::ByMaterial && !rungs.iter().any(|(name, _)| *name == object.name);
+        if let (Some(quality), true) = (self.quality, !rungs.is_empty() && !scene.objects.iter().any(is_chosen)) {
+            return Err(Failure(format!(
+                "--rung names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
+            )));
+        }
         if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial) {
             return Err(Failure(format!(
                 "--rung {rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
@@ -222,8 +222,11 @@ impl Asked {
             refuse_without_meaning(scene, settings, Effect::HalfSpace, &format!("--with {HALF_SPACE}"))?;
         }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
+        let is_open = |object: &Object| {
+            object.material.medium.is_some() && settings.request().rung_of(object) == Rung::ByMaterial
+        };
         let technique = self.with.iter().find(|name| ![SHADOW, HALF_SPACE].contains(&name.as_str()));
-        if let Some(name) = technique.filter(|_| !scatters || settings.rung != Rung::ByMaterial) {
+        if let Some(name) = technique.filter(|_| !scene.objects.iter().any(is_open)) {
             let reason = if scatters { "a rung is asked for" } else { "nothing there has scattering and absorption" };
             return Err(Failure(format!(
                 "scene `{}`: --with {name} has no meaning, since {reason}; leave one out",
@@ -234,9 +237,27 @@ impl Asked {
     }
 }
 
+/// Refuses an option that is given twice for all objects or for one node.
+fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) -> Result<(), Failure> {
+    let mut seen = Vec::new();
+    for node in nodes {
+        if seen.contains(&node) {
+            let what = node.map_or("all objects".to_owned(), |node| format!("`{node}`"));
+            return Err(Failure(format!("{option} names {what} twice; leave one out, or name a node")));
+        }
+        seen.push(node);
+    }
+    Ok(())
+}
+
 /// Refuses a node that no object comes from.
 fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
-    let known: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    let mut known: Vec<&str> = Vec::new();
+    for object in &scene.objects {
+        if !known.contains(&object.name.as_str()) {
+            known.push(&object.name);
+        }
+    }
     if known.contains(&node) {
         return Ok(());
     }

@@ -3,7 +3,7 @@
 use super::{Failure, Outcome, output};
 use clap::CommandFactory;
 
-/// Prints a script with which a shell completes the names of commands, options and their values.
+/// Prints a script with which a shell completes commands and options, and values where an option has few.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  cook completions bash > ~/.local/share/bash-completion/completions/cook\n  cook completions fish > ~/.config/fish/completions/cook.fish"

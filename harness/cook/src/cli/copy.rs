@@ -6,7 +6,7 @@ use lapidary_cook::cookbook::marks::{self, effect_of, effects, override_of};
 use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
 use lapidary_scene::nearest;
-use lapidary_translate::declarations::{functions, of_functions};
+use lapidary_translate::declarations::{declarations, functions, of_functions};
 use lapidary_translate::fitted::{in_group, with_constants, with_private};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
 use lapidary_wgsl::Recipe;
@@ -126,17 +126,15 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
             let known: Vec<&str> = of.functions.iter().map(|function| function.name.as_str()).collect();
             let function = part.map(|part| match of.function(part) {
                 Some(found) => Ok(found.name.clone()),
-                None => Err(no_function("module", name, part, &known)),
+                None => {
+                    let suggestion = nearest::suggest_function(name, part, &known);
+                    Err(Failure(format!("module `{name}` has no function `{part}`{suggestion}")))
+                }
             });
             add(&mut modules, of, |of| of.name, function.transpose()?);
         } else if let Some(of) = lapidary_wgsl::recipe(name) {
-            let source = of.compose();
-            let known = functions(&source);
-            let function = part.map(|part| match known.iter().find(|known| **known == part) {
-                Some(found) => Ok((*found).to_owned()),
-                None => Err(no_function("recipe", name, part, &known)),
-            });
-            add(&mut recipes, of, |of| of.name, function.transpose()?);
+            let function = part.map(|part| function_of(of, part)).transpose()?;
+            add(&mut recipes, of, |of| of.name, function);
         } else {
             let modules = cookbook::modules().iter().map(|module| module.name);
             let known: Vec<&str> = modules.chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name)).collect();
@@ -168,9 +166,19 @@ fn add<T: 'static>(
     }
 }
 
-fn no_function(what: &str, name: &str, function: &str, known: &[&str]) -> Failure {
-    let suggestion = nearest::suggest_function(name, function, known);
-    Failure(format!("{what} `{name}` has no function `{function}`{suggestion}"))
+/// Returns the whole name of a recipe's function, which may be given without the recipe's own.
+fn function_of(recipe: &Recipe, part: &str) -> Result<String, Failure> {
+    let source = recipe.compose();
+    let known = functions(&source);
+    let whole = format!("{}_{part}", recipe.name);
+    if let Some(found) = known.iter().find(|known| **known == part || **known == whole) {
+        return Ok((*found).to_owned());
+    }
+    // Those of modules have pages of their own.
+    let modules: Vec<String> = recipe.requires().into_iter().map(|module| format!("{module}_")).collect();
+    let own = known.into_iter().filter(|name| !modules.iter().any(|start| name.starts_with(start)));
+    let suggestion = nearest::suggest(part, &own.collect::<Vec<_>>());
+    Err(Failure(format!("recipe `{}` has no function `{part}`{suggestion}", recipe.name)))
 }
 
 fn of_modules(modules: &[Wanted<Module>], to: Target) -> Result<Vec<u8>, Failure> {
@@ -212,25 +220,38 @@ fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, 
         return Err(Failure(format!("{option} is for WGSL; leave it or --to out")));
     }
     let in_recipe = |error: TranslateError| match error {
-        TranslateError::NoSuch { what, name: unknown, known } => {
+        TranslateError::NoSuch { what, name: unknown, known } if !known.is_empty() => {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             Failure(format!("recipe `{name}` has no {what} `{unknown}`{}", nearest::suggest(&unknown, &known)))
         }
         error => Failure(format!("recipe `{name}`: {error}")),
     };
-    let values = arguments.set.iter().map(|set| set.split_once('=').ok_or(set));
+    let values = arguments.set.iter().map(|set| set.split_once('=').filter(|(name, _)| !name.is_empty()).ok_or(set));
     let values = values.collect::<Result<Vec<_>, _>>();
     let values = values.map_err(|set| Failure(format!("--set {set}: give a name and a value, such as BOUNCES=8")))?;
-    let source = with_constants(&with_effects(recipe.of, arguments.effects.as_deref())?, &values).map_err(in_recipe)?;
+    if let (Some(_), Some((effect, _))) =
+        (&arguments.effects, values.iter().find(|(name, _)| name.starts_with("EFFECT_")))
+    {
+        return Err(Failure(format!("--set {effect}: --effects says which effects are on; leave one out")));
+    }
     let wanted: Vec<&str> = recipe.functions.iter().map(String::as_str).collect();
+    let with_effects = with_effects(recipe.of, arguments.effects.as_deref(), &wanted)?;
+    let source = with_constants(&with_effects, &values, &wanted).map_err(in_recipe)?;
     if to == Target::Wgsl {
         let some = match wanted.as_slice() {
             [] => source,
             wanted => of_functions(&source, wanted).ok_or_else(|| {
-                Failure(format!("`{name}::{}` goes with what --effects or --set leaves out", wanted.join("`, `")))
+                let known = functions(&source);
+                let gone = wanted.iter().find(|function| !known.contains(function)).unwrap_or(&wanted[0]);
+                Failure(format!("`{name}::{gone}` goes with an effect that --effects leaves out"))
             })?,
         };
         let private: Vec<&str> = arguments.private.iter().map(String::as_str).collect();
+        if let Some(entry) = entry_of(&some).filter(|_| !private.is_empty()) {
+            return Err(Failure(format!(
+                "--private: the entry point `{entry}` would read what nobody has set; name functions, such as {name}::FUNCTION"
+            )));
+        }
         let text = with_private(&some, &private).map_err(in_recipe)?;
         let Some(group) = &arguments.group else { return Ok(text.into_bytes()) };
         if !is_group(group) {
@@ -263,21 +284,27 @@ fn of_recipe(recipe: &Wanted<Recipe>, arguments: &Arguments) -> Result<Vec<u8>, 
     spirv(&ir).map_err(Failure)
 }
 
+/// Returns the name of an entry point in a text, if there is one.
+fn entry_of(text: &str) -> Option<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let found = declarations(&lines).into_iter().find(|declaration| declaration.is_entry)?;
+    found.name.map(str::to_owned)
+}
+
 /// Whether it is a group's number, a constant's name, or a name that a preprocessor replaces.
 fn is_group(text: &str) -> bool {
-    let is_name = |name: &str| {
-        name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-    };
+    let is_plain = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    // Neither a number nor a word of WGSL.
+    let is_name = |name: &str| is_plain(name) && dispatch::parse(&format!("const {name}: u32 = 0u;"), "group").is_ok();
     match text.strip_prefix("#{").and_then(|rest| rest.strip_suffix('}')) {
-        Some(name) => is_name(name),
-        None => text.parse::<u8>().is_ok() || text.split("::").all(is_name),
+        Some(name) => is_plain(name),
+        None => text.parse::<u8>().is_ok_and(|number| number.to_string() == text) || text.split("::").all(is_name),
     }
 }
 
 /// Returns the recipe to paste, without marks. If effects are named, the lines of all others are cut,
-/// and modules that nothing uses any more are left out.
-fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Failure> {
+/// and modules that nothing uses any more, these functions included, are left out.
+fn with_effects(recipe: &Recipe, wanted: Option<&[String]>, functions: &[&str]) -> Result<String, Failure> {
     let source = recipe.compose();
     let known = effects(&source);
     // `--effects ""` switches all effects off.
@@ -292,7 +319,8 @@ fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Fa
     }
     let off = known.iter().filter(|effect| wanted.as_ref().is_some_and(|wanted| !wanted.contains(effect)));
     let off: Vec<&str> = off.map(String::as_str).collect();
-    let text = marks::without(recipe, &off).map_err(|fault| Failure(format!("{}: {}", recipe.name, fault.message)))?;
+    let text = marks::without_but(recipe, &off, functions)
+        .map_err(|fault| Failure(format!("{}: {}", recipe.name, fault.message)))?;
     let switched = text.lines().map(|line| match effect_of(line) {
         Some(effect) if wanted.is_some() => format!("override {}: bool = true;", override_of(&effect)),
         _ => line.to_owned(),

@@ -70,6 +70,19 @@ fn rung_rows() -> Vec<RungRow> {
             qualities.map(Quality::name).collect::<Vec<_>>()
         };
         let ladder = technique.ladder();
+        // By diffusion or by paths on request: the ladder is that of light through a body.
+        let is_another = |other: &Technique| {
+            *other != technique
+                && other.ladder().is_some_and(|known| {
+                    ladder.is_some_and(|own| {
+                        own.steps.len() == known.steps.len()
+                            && own.steps.iter().zip(&known.steps).all(|(one, other)| one.rung == other.rung)
+                    })
+                })
+        };
+        if Technique::ALL.iter().take_while(|other| **other != technique).any(is_another) {
+            continue;
+        }
         // A record also holds forms that are no rungs, for comparison.
         let is_rung = |step: &&Step| step.rung.parse::<Rung>().is_ok();
         for step in ladder.iter().flat_map(|ladder| &ladder.steps).filter(is_rung) {
@@ -120,7 +133,8 @@ fn rungs(json: bool) -> Result<Outcome, Failure> {
     let mut technique = "";
     for row in rows {
         if row.technique != technique {
-            let measure = row.error_measure.map_or(String::new(), |measure| format!(": {measure}, then ms"));
+            let measure =
+                row.error_measure.map_or(String::new(), |measure| format!(": {measure}, then ms on lavapipe"));
             output::line(&format!("{}{measure}", row.technique))?;
             technique = row.technique;
         }

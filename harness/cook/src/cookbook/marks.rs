@@ -116,6 +116,11 @@ fn owned(names: &str) -> Vec<String> {
 /// replace them. A comment above removed lines goes with them, unless it also stands above others.
 /// Declarations that no entry point reaches any more go too.
 pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
+    cut_but(source, off, &[])
+}
+
+/// Returns the same as [`cut`], and keeps these functions even if no entry point reaches them.
+fn cut_but(source: &str, off: &[&str], wanted: &[&str]) -> Result<String, Fault> {
     let is_off = |effects: &[String]| effects.iter().any(|effect| off.contains(&effect.as_str()));
     let is_comment = |text: &str| text.trim_start().starts_with("//");
     let indents: Vec<&str> = source.lines().map(|line| &line[..line.len() - line.trim_start().len()]).collect();
@@ -142,26 +147,34 @@ pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
         is_after_removed = false;
         kept.push(text.to_owned());
     }
-    Ok(reached(&kept))
+    Ok(reached(&kept, wanted))
 }
 
-/// Returns the lines without the declarations that no entry point reaches; all of them if there is
-/// no entry point.
-fn reached(lines: &[String]) -> String {
+/// Returns the lines without the declarations that neither an entry point nor one of these functions reaches; all
+/// of them if there is no entry point.
+fn reached(lines: &[String], wanted: &[&str]) -> String {
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
     let declarations = declarations(&lines);
     let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
-    let needed = declarations::reached(&declarations, |declaration| declaration.is_entry || !has_entry);
+    let needed = declarations::reached(&declarations, |declaration| {
+        declaration.is_entry || !has_entry || declaration.is_function_of(wanted)
+    });
     declarations::text_of(&declarations, &needed)
 }
 
 /// Returns a recipe with its modules, cut as by [`cut`], without the modules, naive forms and parts of
 /// which the cut recipe uses nothing, and without the lines that say what it is made of.
 pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
+    without_but(recipe, off, &[])
+}
+
+/// Returns the same as [`without`], and keeps these functions even if no entry point reaches them.
+pub fn without_but(recipe: &Recipe, off: &[&str], wanted: &[&str]) -> Result<String, Fault> {
     let code = |line: &str| line.split("//").next().unwrap_or_default().trim().to_owned();
-    let own = cut(&recipe.own_text().join("\n"), off)?;
+    let own = cut_but(&recipe.own_text().join("\n"), off, wanted)?;
     let lines: Vec<String> = own.lines().map(code).collect();
-    let words: HashSet<&str> = lines.iter().flat_map(|line| words(line)).collect();
+    let mut words: HashSet<&str> = lines.iter().flat_map(|line| words(line)).collect();
+    words.extend(wanted);
     let is_used = |text: &str| {
         let starts = ["fn ", "struct ", "const "];
         let mut declared = text.lines().filter_map(|line| starts.iter().find_map(|start| line.strip_prefix(start)));
@@ -332,7 +345,7 @@ fn main() -> @location(0) vec4f {
 }
 ";
         assert_eq!(bare, expected);
-        assert_eq!(reached(&["fn f() {".to_owned(), "}".to_owned()]), "fn f() {\n}\n");
+        assert_eq!(reached(&["fn f() {".to_owned(), "}".to_owned()], &[]), "fn f() {\n}\n");
     }
 
     #[test]

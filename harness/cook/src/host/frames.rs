@@ -102,7 +102,8 @@ pub(super) fn all(described: &[Description]) -> Result<(Vec<Use>, Vec<Listed>), 
     let mut frames = Vec::new();
     for example in &EXAMPLES {
         let scene = Scene::named(example.scene)?;
-        let rung: Rung = example.rung.parse().unwrap_or(Rung::ByMaterial);
+        let unfit = |message| HostError::Example { command: example.command, message };
+        let rung: Rung = example.rung.parse().map_err(unfit)?;
         let base = Settings::of_size(256, 256);
         let settings = Settings { rung, gem: (example.gem)(base.gem), ..base };
         let plan = Plan::of(&scene, &settings)?;

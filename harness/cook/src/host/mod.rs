@@ -34,6 +34,14 @@ pub enum HostError {
         /// What is wrong.
         message: String,
     },
+    /// A frame's settings are not sound.
+    #[error("frame `{command}`: {message}")]
+    Example {
+        /// The frame's command.
+        command: &'static str,
+        /// What is wrong.
+        message: String,
+    },
     /// A scene cannot be opened.
     #[error(transparent)]
     Scene(#[from] SceneError),

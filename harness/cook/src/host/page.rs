@@ -54,7 +54,8 @@ fn size(recipe: &str, row: &Row) -> String {
         (Some(bytes), false, _) => bytes.to_string(),
         (Some(_), true, Some(Rule::Bytes(text, _))) => text.to_owned(),
         (Some(bytes), true, Some(Rule::Each(what))) => format!("{bytes} × {what}"),
-        (None, _, Some(Rule::Texture(what))) => what.to_owned(),
+        (None, _, Some(Rule::Texture(what))) if row.effects.is_empty() => what.to_owned(),
+        (None, _, Some(Rule::Texture(what))) => format!("{what}; 1 × 1 where the effect is off"),
         (None, ..) if row.kind == BindingKind::Sampler => String::new(),
         _ => "–".to_owned(),
     }
@@ -176,9 +177,10 @@ pub(super) fn index(rows: Vec<Vec<String>>, frames: &[Listed]) -> String {
 
 const INTRODUCTION: &str = "\
 Each page lists what an engine has to bind and to run: entry points, bindings with sizes and the effects that
-bring them, struct layouts with offsets, overrides, passes. All is read from the recipe's text and from frames
-that the renderer makes; `./cook test host` compares the pages with both, and each formula with the sizes in
-those frames.
+bring them, struct layouts with offsets, overrides, passes. Names, types, offsets, comments and passes are read
+from the recipe's text and from frames that the renderer makes. `./cook test host` compares the pages with both,
+and each formula with the sizes in those frames. Numbers that data decide, such as facets, nodes or words, are
+only seen to be whole; textures, and buffers that no frame binds, are said in words.
 
 In formulas, `n` is the number of cells along each edge of a body's grid, or of a level of it; `triangles`,
 `vertices` and `halo` (triangles beside the charts of an atlas) are those of the body; `texels` is the side of a

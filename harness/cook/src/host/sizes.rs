@@ -82,9 +82,9 @@ const SIZES: &[(&[&str], &str, Rule)] = &[
     // What runs outside of frames.
     (&["texels"], "cdrf_table", Rule::Each("texels")),
     (&["exits"], "random_walk", Rule::Each("walks")),
-    (&["row_sums"], "environment_harmonics", Rule::Each("rows of the image")),
+    (&["row_sums"], "environment_harmonics", Rule::Each("rows of the image × ⌈256 / rows⌉")),
     // Textures.
-    (&["environment_map"], "", Rule::Texture("the image; 1 × 1 without the effect")),
+    (&["environment_map"], "", Rule::Texture("the image")),
     (&["maps"], "", Rule::Texture("texels × texels, a layer for each view; rgba32float")),
     (&["stones"], "", Rule::Texture("texels × texels, a layer for each view; rgba16float")),
     (&["screen_radiance", "screen_depth"], "gem", Rule::Texture("the picture of the other bodies")),

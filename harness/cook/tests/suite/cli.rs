@@ -297,6 +297,23 @@ fn shells_complete_commands_and_options() {
     }
 }
 
+/// A function that no entry point calls, or none under these settings, comes all the same, also by its short name.
+#[test]
+fn any_function_of_a_recipe_can_be_copied_under_any_settings() {
+    let folder = folder();
+    for (name, options, holds) in [
+        ("gem_walk::proxy_geometry_image", &[][..], "fn proxy_geometry_image("),
+        ("cdrf_shading::fresnel_schlick", &["--set", "SHADOW_FORM=2"], "fn fresnel_schlick("),
+        ("gem_walk::dispersion_sellmeier", &["--set", "BOUNCES=8,DISPERSION_FORM=1"], "fn dispersion_sellmeier("),
+        ("gem_walk::dispersion_sellmeier", &["--effects", "convex_trace"], "fn dispersion_sellmeier("),
+        ("voxelize::words", &[], "fn voxelize_words("),
+    ] {
+        let text = succeeds(folder.path(), &[&["copy", name], options].concat()).stdout;
+        assert!(text.contains(holds), "{name} {options:?}: {text}");
+        dispatch::parse(&text, name).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
 /// A recipe's function takes a host's own eye, group and vertex stage, and needs nothing else of the recipe.
 #[test]
 fn a_copied_function_fits_a_host_of_its_own() {

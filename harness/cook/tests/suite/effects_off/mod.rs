@@ -215,7 +215,7 @@ fn a_copy_with_values_set_is_what_specialising_leaves() {
                     naga::ScalarKind::Bool => (*value == 1.0).to_string(),
                     _ => value.to_string(),
                 };
-                let text = with_constants(&source, &[(name, &written)]).unwrap_or_else(|error| panic!("{error}"));
+                let text = with_constants(&source, &[(name, &written)], &[]).unwrap_or_else(|error| panic!("{error}"));
                 assert!(!text.contains(&format!("override {name}:")), "{}", recipe.name);
                 shorter += usize::from(text.lines().count() + 1 < source.lines().count());
                 let set = parse(&text);
