@@ -28,7 +28,7 @@ pub(super) enum Rule {
 
 /// Names of bindings, the start of the recipes' names, and how their sizes are said; the first row that fits
 /// counts.
-const SIZES: &[(&[&str], &str, Rule)] = &[
+pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
     (&["indices"], "texture_irradiance", Rule::Bytes("12 × (triangles + halo)", |q| 12 * (q.triangles + q.halo))),
     (&["positions", "normals", "colors"], "", Rule::Bytes("12 × vertices", |q| 12 * q.vertices)),
     (&["indices"], "", Rule::Bytes("12 × triangles", |q| 12 * q.triangles)),
@@ -103,10 +103,10 @@ const SIZES: &[(&[&str], &str, Rule)] = &[
 ];
 
 /// A number of workgroups along each axis: its text, and its value.
-type Workgroups = (&'static str, fn(&Quantities) -> [u64; 3]);
+pub(super) type Workgroups = (&'static str, fn(&Quantities) -> [u64; 3]);
 
 /// Entry points of compute shaders that are dispatched by a number.
-const WORKGROUPS: &[(&str, Workgroups)] = &[
+pub(super) const WORKGROUPS: &[(&str, Workgroups)] = &[
     ("voxelize_vertices", ("⌈vertices / 64⌉", |q| [q.vertices.div_ceil(64), 1, 1])),
     ("voxelize_triangles", ("⌈triangles / 64⌉", |q| [q.triangles.div_ceil(64), 1, 1])),
     ("voxelize_large", ("64", |_| [64, 1, 1])),
