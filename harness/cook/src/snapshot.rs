@@ -2,6 +2,7 @@
 //! RMSE on linear radiance.
 
 pub mod beside_walks;
+pub mod browse;
 mod comparison;
 pub mod frames;
 mod label;

@@ -4,9 +4,9 @@ use super::{Context, Failure, Outcome, output, progress};
 use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_cook::gallery::{self, Picture, Site};
 use lapidary_cook::repository;
+use lapidary_cook::snapshot::browse::caption;
 use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, SHOTS, WALKED, beside_walks, strip};
 use lapidary_render::file;
-use lapidary_scene::BUILT_IN;
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.
@@ -33,12 +33,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         let [seen, _] = snapshot::render_shot(gpu, shot)?;
         let path = rendered.path().join(format!("{}.png", shot.name));
         file::write(&seen, &path)?;
-        let of_scene =
-            BUILT_IN.iter().find(|built_in| built_in.name == shot.scene).map_or("", |built_in| built_in.description);
         pictures.push(Picture {
             title: shot.title.to_owned(),
             file: path,
-            paragraph: if shot.paragraph.is_empty() { of_scene } else { shot.paragraph }.to_owned(),
+            paragraph: caption(shot).to_owned(),
             command: shot.command(),
             size: (shot.side, shot.side),
         });

@@ -53,6 +53,18 @@ fn the_drivers_are_as_recorded() {
     }
 }
 
+/// The page of pictures, to be browsed without a build.
+#[test]
+fn the_pictures_are_listed_with_their_captions() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../snapshots/README.md");
+    let page = lapidary_cook::snapshot::browse::page();
+    if std::fs::read_to_string(&path).is_ok_and(|written| written == page) {
+        return;
+    }
+    assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "snapshots/README.md: ./cook test --refresh");
+    std::fs::write(&path, page).expect("written");
+}
+
 /// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
 /// it.
 #[test]
