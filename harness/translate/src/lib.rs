@@ -14,6 +14,7 @@ mod bindings;
 pub mod declarations;
 pub mod fitted;
 mod hlsl;
+pub mod indentation;
 mod items;
 mod library;
 mod names;

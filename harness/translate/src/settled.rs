@@ -1,6 +1,7 @@
 //! Branches that constants settle, taken out of a text.
 
 use crate::declarations::{self, declarations, without_comment, words};
+use crate::indentation::indented;
 use std::collections::HashMap;
 
 /// Returns the text without the branches that its constants rule out, and without the declarations that
@@ -17,7 +18,7 @@ pub fn settled(source: &str, wanted: &[&str]) -> String {
         declaration.is_entry || !has_entry || declaration.is_function_of(wanted)
     };
     let needed = declarations::reached(&declarations, is_root);
-    declarations::text_of(&declarations, &needed)
+    indented(&declarations::text_of(&declarations, &needed))
 }
 
 /// What a constant or a part of a condition is.

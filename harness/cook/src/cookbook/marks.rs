@@ -2,6 +2,7 @@
 //! described in `docs/contract.md`.
 
 use lapidary_translate::declarations::{self, declarations, words};
+use lapidary_translate::indentation::indented;
 use lapidary_wgsl::Recipe;
 use std::collections::HashSet;
 
@@ -189,7 +190,8 @@ pub fn without_but(recipe: &Recipe, off: &[&str], wanted: &[&str]) -> Result<Str
     let whole = lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n"));
     let made_of = ["// requires:", "// parts:", "// compares:"];
     let kept = whole.lines().filter(|line| !made_of.iter().any(|start| line.starts_with(start)));
-    Ok(kept.flat_map(|line| [line, "\n"]).collect())
+    // A block whose condition went leaves its lines too deep.
+    Ok(indented(&kept.flat_map(|line| [line, "\n"]).collect::<String>()))
 }
 
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an

@@ -7,6 +7,7 @@ use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_
 use lapidary_cook::cookbook::{marks, modules};
 use lapidary_cook::{check, formulas};
 use lapidary_translate::declarations::{functions, of_functions};
+use lapidary_translate::indentation::indented;
 use lapidary_wgsl::RECIPES;
 use std::path::Path;
 
@@ -390,6 +391,22 @@ fn reachable_globals(ir: &naga::Module, function: &naga::Function) -> Vec<naga::
         });
     }
     found
+}
+
+/// What `indented` makes of a text is how the cookbook is written, so that a copy with lines cut looks as if written
+/// so.
+#[test]
+fn texts_are_indented_by_their_brackets() {
+    let modules = modules().iter().map(|module| module.whole);
+    let texts = modules
+        .chain(lapidary_wgsl::PARTS.iter().map(|part| part.source))
+        .chain(RECIPES.iter().map(|recipe| recipe.source));
+    for text in texts {
+        for (line, written) in indented(text).lines().zip(text.lines()) {
+            // Marks of effects stand where they like.
+            assert!(line == written || written.trim().starts_with("//"), "{written:?}, not {line:?}");
+        }
+    }
 }
 
 /// A comment that says which recipe comes before or after names one that there is.
