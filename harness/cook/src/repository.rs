@@ -10,8 +10,9 @@ pub struct NoRepository {
     place: PathBuf,
 }
 
-/// Where the repository was when the program was built.
-fn place() -> PathBuf {
+/// Returns where the repository was when the program was built.
+#[must_use]
+pub fn place() -> PathBuf {
     let harness = Path::new(env!("CARGO_MANIFEST_DIR"));
     harness.ancestors().nth(2).unwrap_or(harness).to_owned()
 }

@@ -1,6 +1,7 @@
 //! The suite's seed, derived from the commit: each change is tested with different inputs, and
 //! repeated runs on one commit with the same ones.
 
+use crate::repository;
 use lapidary_assay::draws::mix;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -29,12 +30,9 @@ impl SuiteSeed {
     /// Returns an error if the environment's value is not a whole number.
     pub fn of_environment() -> Result<&'static SuiteSeed, String> {
         static SEED: OnceLock<Result<SuiteSeed, String>> = OnceLock::new();
-        SEED.get_or_init(|| {
-            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-            derive(std::env::var(SEED_VARIABLE).ok().as_deref(), || tree_of(&root))
-        })
-        .as_ref()
-        .map_err(Clone::clone)
+        SEED.get_or_init(|| derive(std::env::var(SEED_VARIABLE).ok().as_deref(), || tree_of(&repository::place())))
+            .as_ref()
+            .map_err(Clone::clone)
     }
 
     /// Returns another seed of the same commit, for a second run with different inputs.

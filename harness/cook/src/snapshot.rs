@@ -10,13 +10,14 @@ mod shots;
 pub mod strip;
 mod walked;
 
+use crate::repository;
 use beside_walks::BesideWalks;
 pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear};
 pub(crate) use comparison::{flip, flip_of_rgb};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings, file};
-use lapidary_scene::{Scene, SceneError};
+use lapidary_scene::{BUILT_IN, Scene, SceneError};
 pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
@@ -58,6 +59,38 @@ impl Committed {
         }
     }
 
+    /// Returns its title.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Shot(shot) => shot.title,
+            Self::Strip => strip::TITLE,
+            Self::BesideWalks(of) => of.title,
+        }
+    }
+
+    /// Returns what stands below it: its description, or that of its scene.
+    #[must_use]
+    pub fn caption(self) -> &'static str {
+        match self {
+            Self::Shot(shot) if shot.paragraph.is_empty() => {
+                BUILT_IN.iter().find(|scene| scene.name == shot.scene).map_or("", |scene| scene.description)
+            }
+            Self::Shot(shot) => shot.paragraph,
+            Self::Strip => strip::PARAGRAPH,
+            Self::BesideWalks(of) => of.paragraph,
+        }
+    }
+
+    /// Returns the command that renders it.
+    #[must_use]
+    pub fn command(self) -> String {
+        match self {
+            Self::Shot(shot) => shot.command(),
+            Self::Strip | Self::BesideWalks(_) => format!("./cook snapshots {}", self.name()),
+        }
+    }
+
     /// Returns the folder of its files.
     #[must_use]
     pub fn folder(self) -> PathBuf {
@@ -94,7 +127,7 @@ impl Committed {
 
 /// Returns the folder of the pictures of a technique's recipes.
 pub fn folder(technique: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../snapshots").join(technique)
+    repository::place().join("snapshots").join(technique)
 }
 
 /// Reads a committed reference's linear radiance, and encodes it with the settings' size and

@@ -141,6 +141,17 @@ pub fn text_of(declarations: &[Declaration<'_>], needed: &[bool]) -> String {
     text
 }
 
+/// Returns the text without the declarations that neither entry points nor these functions reach; all of it if
+/// there is no entry point.
+#[must_use]
+pub fn reached_text(lines: &[&str], wanted: &[&str]) -> String {
+    let declarations = declarations(lines);
+    let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
+    let is_root =
+        |declaration: &Declaration<'_>| declaration.is_entry || !has_entry || declaration.is_function_of(wanted);
+    text_of(&declarations, &reached(&declarations, is_root))
+}
+
 /// Returns the names of a text's functions, entry points among them.
 #[must_use]
 pub fn functions(source: &str) -> Vec<&str> {

@@ -1,6 +1,6 @@
 //! Branches that constants settle, taken out of a text.
 
-use crate::declarations::{self, declarations, without_comment, words};
+use crate::declarations::{reached_text, without_comment, words};
 use crate::indentation::indented;
 use std::collections::HashMap;
 
@@ -12,13 +12,7 @@ pub fn settled(source: &str, wanted: &[&str]) -> String {
     let lines: Vec<&str> = source.lines().collect();
     let folded = folded(&lines, &constants);
     let lines: Vec<&str> = folded.iter().map(String::as_str).collect();
-    let declarations = declarations(&lines);
-    let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
-    let is_root = |declaration: &declarations::Declaration<'_>| {
-        declaration.is_entry || !has_entry || declaration.is_function_of(wanted)
-    };
-    let needed = declarations::reached(&declarations, is_root);
-    indented(&declarations::text_of(&declarations, &needed))
+    indented(&reached_text(&lines, wanted))
 }
 
 /// What a constant or a part of a condition is.

@@ -159,16 +159,12 @@ impl Asked {
         let (width, height) = self.size;
         let (rung, rungs) = self.rungs(scene)?;
         let quality = self.quality.unwrap_or_default();
-        let is_chosen =
-            |object: &Object| rung == Rung::ByMaterial && !rungs.iter().any(|(name, _)| *name == object.name);
-        if let (Some(quality), true) = (self.quality, !rungs.is_empty() && !scene.objects.iter().any(is_chosen)) {
+        let is_named = |object: &Object| rungs.iter().any(|(name, _)| *name == object.name);
+        let all_are_named = !rungs.is_empty() && scene.objects.iter().all(is_named);
+        if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial || all_are_named) {
+            let rung = if rung == Rung::ByMaterial { String::new() } else { format!(" {rung}") };
             return Err(Failure(format!(
-                "--rung names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
-            )));
-        }
-        if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial) {
-            return Err(Failure(format!(
-                "--rung {rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
+                "--rung{rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
             )));
         }
         let settings = Settings {

@@ -4,8 +4,7 @@ use super::{Context, Failure, Outcome, output, progress};
 use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_cook::gallery::{self, Picture, Site};
 use lapidary_cook::repository;
-use lapidary_cook::snapshot::browse::caption;
-use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, SHOTS, WALKED, beside_walks, strip};
+use lapidary_cook::snapshot::{Committed, EXR_SIDE, WALKED};
 use lapidary_render::file;
 use std::path::{Path, PathBuf};
 
@@ -28,33 +27,16 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let rendered = tempfile::tempdir()?;
     let bar = progress::bar(Committed::COUNT as u64, "rendering");
     let mut pictures = Vec::new();
-    for shot in &SHOTS {
-        bar.set_message(shot.name);
-        let [seen, _] = snapshot::render_shot(gpu, shot)?;
-        let path = rendered.path().join(format!("{}.png", shot.name));
-        file::write(&seen, &path)?;
-        pictures.push(Picture {
-            title: shot.title.to_owned(),
-            file: path,
-            paragraph: caption(shot).to_owned(),
-            command: shot.command(),
-            size: (shot.side, shot.side),
-        });
-        bar.inc(1);
-    }
-    let strip = (Committed::Strip, strip::TITLE, strip::PARAGRAPH);
-    let compared = beside_walks::ALL.into_iter().map(|of| (Committed::BesideWalks(of), of.title, of.paragraph));
-    for (committed, title, paragraph) in [strip].into_iter().chain(compared) {
-        let name = committed.name();
-        bar.set_message(name);
-        let path = rendered.path().join(format!("{name}.png"));
+    for committed in Committed::all() {
+        bar.set_message(committed.name());
+        let path = rendered.path().join(format!("{}.png", committed.name()));
         let [seen, _] = committed.render(gpu)?;
         file::write(&seen, &path)?;
         pictures.push(Picture {
-            title: title.to_owned(),
+            title: committed.title().to_owned(),
             file: path,
-            paragraph: paragraph.to_owned(),
-            command: format!("./cook snapshots {name}"),
+            paragraph: committed.caption().to_owned(),
+            command: committed.command(),
             size: (seen.width, seen.height),
         });
         bar.inc(1);

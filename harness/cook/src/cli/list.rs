@@ -70,17 +70,10 @@ fn rung_rows() -> Vec<RungRow> {
             qualities.map(Quality::name).collect::<Vec<_>>()
         };
         let ladder = technique.ladder();
-        // By diffusion or by paths on request: the ladder is that of light through a body.
-        let is_another = |other: &Technique| {
-            *other != technique
-                && other.ladder().is_some_and(|known| {
-                    ladder.is_some_and(|own| {
-                        own.steps.len() == known.steps.len()
-                            && own.steps.iter().zip(&known.steps).all(|(one, other)| one.rung == other.rung)
-                    })
-                })
-        };
-        if Technique::ALL.iter().take_while(|other| **other != technique).any(is_another) {
+        // By diffusion on request: the ladder is that of light through a body.
+        let rungs = |of: &Technique| Some(of.ladder()?.steps.iter().map(|step| &step.rung).collect::<Vec<_>>());
+        let mut before = Technique::ALL.iter().take_while(|other| **other != technique);
+        if ladder.is_some() && before.any(|other| rungs(other) == rungs(&technique)) {
             continue;
         }
         // A record also holds forms that are no rungs, for comparison.

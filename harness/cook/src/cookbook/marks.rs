@@ -1,7 +1,7 @@
 //! Marks of the lines of a recipe that belong to an effect, or that replace it. The format is
 //! described in `docs/contract.md`.
 
-use lapidary_translate::declarations::{self, declarations, words};
+use lapidary_translate::declarations::{self, reached_text, words};
 use lapidary_translate::indentation::indented;
 use lapidary_wgsl::Recipe;
 use std::collections::HashSet;
@@ -148,19 +148,8 @@ fn cut_but(source: &str, off: &[&str], wanted: &[&str]) -> Result<String, Fault>
         is_after_removed = false;
         kept.push(text.to_owned());
     }
-    Ok(reached(&kept, wanted))
-}
-
-/// Returns the lines without the declarations that neither an entry point nor one of these functions reaches; all
-/// of them if there is no entry point.
-fn reached(lines: &[String], wanted: &[&str]) -> String {
-    let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-    let declarations = declarations(&lines);
-    let has_entry = declarations.iter().any(|declaration| declaration.is_entry);
-    let needed = declarations::reached(&declarations, |declaration| {
-        declaration.is_entry || !has_entry || declaration.is_function_of(wanted)
-    });
-    declarations::text_of(&declarations, &needed)
+    let kept: Vec<&str> = kept.iter().map(String::as_str).collect();
+    Ok(reached_text(&kept, wanted))
 }
 
 /// Returns a recipe with its modules, cut as by [`cut`], without the modules, naive forms and parts of
@@ -347,7 +336,7 @@ fn main() -> @location(0) vec4f {
 }
 ";
         assert_eq!(bare, expected);
-        assert_eq!(reached(&["fn f() {".to_owned(), "}".to_owned()], &[]), "fn f() {\n}\n");
+        assert_eq!(reached_text(&["fn f() {", "}"], &[]), "fn f() {\n}\n");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use lapidary_render::frame::{Bound, Frame, Pass, PipelineId, PipelineKind, Resou
 use lapidary_render::plan::Plan;
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::{Object, Scene};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A frame whose sizes are looked at.
 pub(super) struct Example {
@@ -108,7 +108,9 @@ pub(super) fn all(described: &[Description]) -> Result<(Vec<Use>, Vec<Listed>), 
         let settings = Settings { rung, gem: (example.gem)(base.gem), ..base };
         let plan = Plan::of(&scene, &settings)?;
         let objects = objects(&scene, &plan);
-        let reader = Reader { example: example.command, frame: &plan.frame, objects, described };
+        let is_diffused = |resource: &&Resource| resource.name.ends_with("/conductances");
+        let diffused = plan.frame.resources.iter().filter(is_diffused).map(|resource| &*resource.object).collect();
+        let reader = Reader { example: example.command, frame: &plan.frame, objects, diffused, described };
         let mut steps: Vec<Step> = Vec::new();
         for pass in &plan.frame.passes {
             reader.pass(pass, &mut uses, &mut steps)?;
@@ -159,6 +161,8 @@ struct Reader<'a> {
     example: &'static str,
     frame: &'a Frame,
     objects: HashMap<String, Quantities>,
+    /// Objects through which light diffuses.
+    diffused: HashSet<&'a str>,
     described: &'a [Description],
 }
 
@@ -268,13 +272,8 @@ impl Reader<'_> {
         if binding.starts_with("coarser_") {
             numbers.n *= 2;
         }
-        let diffuses = self
-            .frame
-            .resources
-            .iter()
-            .any(|other| other.object == resource.object && other.name.ends_with("/conductances"));
         // Diffusion counts eighths of its cells.
-        if recipe == "voxelize" && diffuses {
+        if recipe == "voxelize" && self.diffused.contains(resource.object.as_str()) {
             numbers.n *= 2;
         }
         numbers

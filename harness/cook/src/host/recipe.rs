@@ -5,7 +5,7 @@ use lapidary_translate::declarations::{Declaration, declarations, without_commen
 use lapidary_translate::{BindingKind, bindings};
 use lapidary_wgsl::Recipe;
 use naga::{ArraySize, Binding, BuiltIn, Handle, Module, ShaderStage, Type, TypeInner};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// What a recipe's text says to a host.
 pub(super) struct Description {
@@ -82,8 +82,11 @@ impl Description {
             let found = declared.iter().find(|declaration| declaration.name == Some(name));
             found.and_then(|found| type_of(found)).unwrap_or_default()
         };
+        let presence = Presence::of(recipe)?;
         let mut rows = Vec::new();
+        let mut order: Vec<Handle<Type>> = Vec::new();
         for bound in bindings(&ir) {
+            add_structs(&ir, bound.ty, &mut order);
             let (bytes, is_open) = size(&ir, bound.ty);
             rows.push(Row {
                 group: bound.group,
@@ -92,14 +95,10 @@ impl Description {
                 kind: bound.kind,
                 bytes,
                 is_open,
-                effects: effects(recipe, &bound.name)?,
+                effects: presence.effects_of(&bound.name),
                 comment: comment(&bound.name),
                 name: bound.name,
             });
-        }
-        let mut order: Vec<Handle<Type>> = Vec::new();
-        for bound in bindings(&ir) {
-            add_structs(&ir, bound.ty, &mut order);
         }
         let structs = order.into_iter().map(|handle| struct_of(&ir, handle, &declared)).collect();
         let overrides = ir.overrides.iter().filter_map(|(_, it)| it.name.clone()).map(|name| Override {
@@ -212,37 +211,51 @@ fn struct_of(ir: &Module, handle: Handle<Type>, declared: &[Declaration<'_>]) ->
     Struct { bytes: *span, members: members.collect(), name }
 }
 
-/// Returns which effects bring a binding: those without any of which it is gone, or else those of which one
-/// is enough.
-fn effects(recipe: &'static Recipe, binding: &str) -> Result<String, String> {
-    let known = marks::effects(&recipe.compose());
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    let is_left = |off: &[&str]| -> Result<bool, String> {
-        let text = marks::without(recipe, off).map_err(|fault| fault.message)?;
-        let ends = format!(" {binding}:");
-        Ok(text.lines().any(|line| line.starts_with("@group(") && without_comment(line).contains(&ends)))
-    };
-    if known.is_empty() || is_left(&known)? {
-        return Ok(String::new());
+/// Which bindings a recipe has with some effects off, by its cut texts.
+struct Presence {
+    effects: Vec<String>,
+    /// Bindings without any effect.
+    without_any: HashSet<String>,
+    /// Bindings without one effect, in the order of `effects`.
+    without: Vec<HashSet<String>>,
+    /// Bindings with one effect alone.
+    alone: Vec<HashSet<String>>,
+}
+
+impl Presence {
+    fn of(recipe: &'static Recipe) -> Result<Self, String> {
+        let effects = marks::effects(&recipe.compose());
+        let known: Vec<&str> = effects.iter().map(String::as_str).collect();
+        let left = |off: &[&str]| -> Result<HashSet<String>, String> {
+            let text = marks::without(recipe, off).map_err(|fault| fault.message)?;
+            let lines: Vec<&str> = text.lines().collect();
+            let bound =
+                |declaration: &Declaration<'_>| declaration.lines.iter().any(|line| line.starts_with("@group("));
+            let names = declarations(&lines).into_iter().filter(bound).filter_map(|declaration| declaration.name);
+            Ok(names.map(str::to_owned).collect())
+        };
+        let but = |effect: &str| known.iter().filter(|other| **other != effect).copied().collect::<Vec<_>>();
+        Ok(Self {
+            without_any: left(&known)?,
+            without: known.iter().map(|effect| left(&[effect])).collect::<Result<_, _>>()?,
+            alone: known.iter().map(|effect| left(&but(effect))).collect::<Result<_, _>>()?,
+            effects,
+        })
     }
-    let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>();
-    let mut needed = Vec::new();
-    for effect in &known {
-        if !is_left(&[effect])? {
-            needed.push(*effect);
+
+    /// Returns which effects bring a binding: those without any of which it is gone, or else those of which one
+    /// is enough; nothing if it is always there.
+    fn effects_of(&self, binding: &str) -> String {
+        if self.without_any.contains(binding) {
+            return String::new();
         }
+        let quoted = |sets: &[HashSet<String>], has: bool| -> Vec<String> {
+            let all = self.effects.iter().zip(sets).filter(|(_, set)| set.contains(binding) == has);
+            all.map(|(effect, _)| format!("`{effect}`")).collect()
+        };
+        let needed = quoted(&self.without, false);
+        if needed.is_empty() { quoted(&self.alone, true).join(" or ") } else { needed.join(" and ") }
     }
-    if !needed.is_empty() {
-        return Ok(quoted(&needed).join(" and "));
-    }
-    let mut enough = Vec::new();
-    for effect in &known {
-        let others: Vec<&str> = known.iter().filter(|other| *other != effect).copied().collect();
-        if is_left(&others)? {
-            enough.push(*effect);
-        }
-    }
-    Ok(quoted(&enough).join(" or "))
 }
 
 /// Returns what an entry point needs of the host: threads, numbers, formats.

@@ -1,7 +1,6 @@
 //! `snapshots/README.md`: the committed pictures with their captions, to be browsed without a build.
 
-use super::{Committed, Shot, WALKED, strip};
-use lapidary_scene::BUILT_IN;
+use super::{Committed, WALKED};
 use std::fmt::Write as _;
 
 /// The folders of pictures, each with its heading.
@@ -22,25 +21,15 @@ renders all anew and compares them. Beside each PNG stands an EXR with linear ra
 
 ";
 
-/// What stands beside a picture.
-struct Entry {
-    /// Path from this page.
-    file: String,
-    title: String,
-    paragraph: String,
-    rung: String,
-    command: String,
-}
-
 /// Returns the page.
 #[must_use]
 pub fn page() -> String {
     let mut page = INTRODUCTION.to_owned();
     for (technique, heading) in TECHNIQUES {
         let _ = writeln!(page, "## {heading}\n\n| picture | what it shows |\n|---|---|");
-        for entry in Committed::all().filter_map(|committed| entry(committed, technique)) {
-            let Entry { file, title, paragraph, rung, command } = entry;
-            let text = format!("**{title}.** {paragraph} {rung}<br>`{command}`");
+        for picture in Committed::all().filter(|picture| picture.folder().ends_with(technique)) {
+            let (title, file) = (picture.title(), format!("{technique}/{}.png", picture.name()));
+            let text = format!("**{title}.** {} {}<br>`{}`", picture.caption(), rung(picture), picture.command());
             let _ = writeln!(page, "| ![{title}]({file}) | {} |", text.replace('|', "\\|"));
         }
         page.push('\n');
@@ -55,31 +44,9 @@ pub fn page() -> String {
     page
 }
 
-/// Returns what stands beside a picture, if it is in a technique's folder.
-fn entry(committed: Committed, technique: &str) -> Option<Entry> {
-    committed.folder().ends_with(technique).then(|| {
-        let file = format!("{technique}/{}.png", committed.name());
-        let (title, paragraph, rung, command) = match committed {
-            Committed::Shot(shot) => (shot.title, caption(shot), rung(shot), shot.command()),
-            Committed::Strip => {
-                (strip::TITLE, strip::PARAGRAPH, String::new(), format!("./cook snapshots {}", strip::NAME))
-            }
-            Committed::BesideWalks(of) => {
-                (of.title, of.paragraph, String::new(), format!("./cook snapshots {}", of.name))
-            }
-        };
-        Entry { file, title: title.to_owned(), paragraph: paragraph.to_owned(), rung, command }
-    })
-}
-
-/// Returns a shot's caption, or that of its scene.
-pub fn caption(shot: &Shot) -> &'static str {
-    let of_scene = BUILT_IN.iter().find(|scene| scene.name == shot.scene).map_or("", |scene| scene.description);
-    if shot.paragraph.is_empty() { of_scene } else { shot.paragraph }
-}
-
-/// Returns which rung draws a shot, as a sentence.
-fn rung(shot: &Shot) -> String {
+/// Returns which rung draws a picture of one scene, as a sentence.
+fn rung(picture: Committed) -> String {
+    let Committed::Shot(shot) = picture else { return String::new() };
     match shot.rung {
         "by-material" => format!("Rung: each body's own, at quality {}.", shot.quality),
         rung => format!("Rung: `{rung}`."),

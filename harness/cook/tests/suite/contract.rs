@@ -347,50 +347,20 @@ fn every_function_of_a_recipe_can_be_copied_alone() {
         let own = functions(&source).into_iter().filter(|name| !prefixes.iter().any(|prefix| name.starts_with(prefix)));
         for name in own {
             let text = of_functions(&source, &[name]).expect("a function of the recipe");
-            let (mut ir, _) =
+            let (ir, info) =
                 dispatch::parse(&text, recipe.name).unwrap_or_else(|error| panic!("{}::{name}: {error}", recipe.name));
-            let bound = |ir: &naga::Module| -> Vec<String> {
-                let bound = ir.global_variables.iter().filter(|(_, variable)| variable.binding.is_some());
-                bound.filter_map(|(_, variable)| variable.name.clone()).collect()
-            };
-            let declared = bound(&ir);
-            // naga drops what no entry point reaches, so that the function has to be one.
-            if let Some((_, function)) = ir.functions.iter().find(|(_, it)| it.name.as_deref() == Some(name)) {
-                let used: Vec<naga::Handle<naga::GlobalVariable>> = reachable_globals(&ir, function);
-                let used: Vec<String> = used.iter().filter_map(|it| ir.global_variables[*it].name.clone()).collect();
-                for name_of_binding in &declared {
-                    assert!(used.contains(name_of_binding), "{}::{name} brings `{name_of_binding}`", recipe.name);
+            let function = ir.functions.iter().find(|(_, function)| function.name.as_deref() == Some(name));
+            let uses = match function {
+                Some((handle, _)) => &info[handle],
+                None => {
+                    info.get_entry_point(ir.entry_points.iter().position(|it| it.name == name).expect("an entry point"))
                 }
-            } else {
-                naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
-                assert_eq!(bound(&ir), declared, "{}::{name}", recipe.name);
+            };
+            for (handle, variable) in ir.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()) {
+                assert!(!uses[handle].is_empty(), "{}::{name} brings {:?}", recipe.name, variable.name);
             }
         }
     }
-}
-
-/// Returns the global variables that a function or one that it calls refers to.
-fn reachable_globals(ir: &naga::Module, function: &naga::Function) -> Vec<naga::Handle<naga::GlobalVariable>> {
-    let mut found = Vec::new();
-    let mut left = vec![function];
-    let mut seen = std::collections::HashSet::new();
-    while let Some(function) = left.pop() {
-        for (_, expression) in function.expressions.iter() {
-            match expression {
-                naga::Expression::GlobalVariable(global) => found.push(*global),
-                naga::Expression::CallResult(callee) if seen.insert(*callee) => left.push(&ir.functions[*callee]),
-                _ => {}
-            }
-        }
-        lapidary_specialise::for_each_statement(&function.body, &mut |statement| {
-            if let naga::Statement::Call { function, .. } = statement
-                && seen.insert(*function)
-            {
-                left.push(&ir.functions[*function]);
-            }
-        });
-    }
-    found
 }
 
 /// What `indented` makes of a text is how the cookbook is written, so that a copy with lines cut looks as if written

@@ -1,29 +1,26 @@
 //! The pages for hosts: generated from the recipes and from frames, whose sizes their formulas give.
 
+use crate::generated;
 use lapidary_cook::cookbook::marks;
-use lapidary_cook::host;
+use lapidary_cook::{host, repository};
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::sync::LazyLock;
+
+/// Returns the pages, made once for all tests.
+fn pages() -> &'static [(String, String)] {
+    static PAGES: LazyLock<Vec<(String, String)>> =
+        LazyLock::new(|| host::pages().unwrap_or_else(|error| panic!("{error}")));
+    &PAGES
+}
 
 /// `./cook test --refresh` rewrites them.
 #[test]
 fn the_pages_are_those_of_the_recipes_and_frames() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/recipes");
-    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
-    let is_refreshing = std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some();
-    if is_refreshing {
-        std::fs::create_dir_all(&folder).expect("a folder");
+    for (name, text) in pages() {
+        generated::keep(&format!("docs/recipes/{name}"), text);
     }
-    for (name, text) in &pages {
-        let path = folder.join(name);
-        if std::fs::read_to_string(&path).is_ok_and(|written| written == *text) {
-            continue;
-        }
-        assert!(is_refreshing, "docs/recipes/{name}: ./cook test --refresh");
-        std::fs::write(&path, text).expect("written");
-    }
-    let names: BTreeSet<&str> = pages.iter().map(|(name, _)| name.as_str()).collect();
-    for entry in std::fs::read_dir(&folder).expect("a folder") {
+    let names: BTreeSet<&str> = pages().iter().map(|(name, _)| name.as_str()).collect();
+    for entry in std::fs::read_dir(repository::place().join("docs/recipes")).expect("a folder") {
         let name = entry.expect("an entry").file_name();
         assert!(
             name.to_str().is_some_and(|name| names.contains(name)),
@@ -36,9 +33,8 @@ fn the_pages_are_those_of_the_recipes_and_frames() {
 /// A page that left out a binding or an override would pass unnoticed.
 #[test]
 fn every_binding_and_override_stands_on_its_page() {
-    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
     for recipe in lapidary_wgsl::RECIPES {
-        let (_, page) = pages.iter().find(|(name, _)| *name == format!("{}.md", recipe.name)).expect("a page");
+        let (_, page) = pages().iter().find(|(name, _)| *name == format!("{}.md", recipe.name)).expect("a page");
         // Without what none of its entry points reaches.
         let source = marks::without(recipe, &[]).unwrap_or_else(|fault| panic!("{}", fault.message));
         for line in source.lines() {
@@ -63,8 +59,7 @@ fn every_binding_and_override_stands_on_its_page() {
 /// The tables that people have written say no other sizes.
 #[test]
 fn the_written_tables_have_the_recipes_sizes() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    let pages = host::pages().unwrap_or_else(|error| panic!("{error}"));
+    let docs = repository::place().join("docs");
     let mut count = 0;
     for (page, start) in
         [("gem", "gem"), ("cdrf_shading", "cdrf_shading"), ("optical_path_shading", "optical_path_shading")]
@@ -77,7 +72,7 @@ fn the_written_tables_have_the_recipes_sizes() {
             let Some((rest, bytes)) = before.rsplit_once(", ") else { continue };
             let Ok(bytes) = bytes.parse::<u32>() else { continue };
             let name = rest.split('`').rev().nth(1).expect("a name in backquotes");
-            let sizes = pages.iter().filter(|(file, _)| file.starts_with(start)).filter_map(|(_, text)| {
+            let sizes = pages().iter().filter(|(file, _)| file.starts_with(start)).filter_map(|(_, text)| {
                 let row = text.lines().find(|line| line.contains(&format!("| `{name}` | ")))?;
                 row.split(" | ").nth(4)?.split(' ').next()?.parse::<u32>().ok()
             });

@@ -26,6 +26,7 @@ mod formulas;
 mod frame;
 mod furnace;
 mod gem;
+mod generated;
 mod hard_cases;
 mod host;
 mod instances;

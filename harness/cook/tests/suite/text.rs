@@ -1,11 +1,13 @@
 //! The interface as text: every signature and every promised accuracy, on which users rely. A
 //! change of either must be visible in review. `./cook test --refresh` accepts it.
 
+use crate::generated;
 use crate::program::succeeds;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::check::{Row, difference};
 use lapidary_cook::cost::page;
+use lapidary_cook::snapshot::browse;
 use lapidary_cook::{builtins, cookbook};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -47,22 +49,13 @@ fn the_drivers_are_as_recorded() {
     let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");
     let filled = page::with_table(&filled, page::DIFFERENCES, &difference::table(&rows)).expect("sound marks");
     assert!(filled.contains(&builtins), "drivers.md has no place for the table `{}`", page::BUILTINS);
-    if filled != page {
-        assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "docs/drivers.md: ./cook test --refresh");
-        std::fs::write(docs.join("drivers.md"), filled).expect("written");
-    }
+    generated::keep("docs/drivers.md", &filled);
 }
 
 /// The page of pictures, to be browsed without a build.
 #[test]
 fn the_pictures_are_listed_with_their_captions() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../snapshots/README.md");
-    let page = lapidary_cook::snapshot::browse::page();
-    if std::fs::read_to_string(&path).is_ok_and(|written| written == page) {
-        return;
-    }
-    assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "snapshots/README.md: ./cook test --refresh");
-    std::fs::write(&path, page).expect("written");
+    generated::keep("snapshots/README.md", &browse::page());
 }
 
 /// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
@@ -74,8 +67,5 @@ fn the_readme_lists_the_modules() {
     let table = succeeds(std::path::Path::new("."), &["list", "--markdown"]).stdout;
     let filled = page::with_table(&page, page::MODULES, &table).expect("sound marks");
     assert!(filled.contains(&table), "README.md has no place for the table `{}`", page::MODULES);
-    if filled != page {
-        assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "README.md: ./cook test --refresh\n{table}");
-        std::fs::write(&path, filled).expect("the page is written");
-    }
+    generated::keep("README.md", &filled);
 }

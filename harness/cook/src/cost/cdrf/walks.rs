@@ -4,13 +4,14 @@
 use crate::cost::report::distinct;
 use crate::cost::sphere::{self, Fit, ScaleKind};
 use crate::cost::{CostError, Report};
+use crate::repository;
 use lapidary_reference::random_walk::Profile;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Returns the path of the recorded spheres.
 pub fn record_file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements/random_walk/sphere.json")
+    repository::place().join("docs/measurements/random_walk/sphere.json")
 }
 
 /// Reads the recorded spheres.
