@@ -6,6 +6,7 @@ pub mod check;
 pub mod compare;
 pub mod cookbook;
 pub mod cost;
+pub mod diagram;
 pub mod dist;
 pub mod exposure;
 pub mod folder;

@@ -3,9 +3,13 @@
 //! folder, readable from disk without a network.
 
 mod highlight;
+pub mod ladder;
+pub mod live;
 mod markdown;
 mod page;
+pub mod rows;
 mod section;
+pub mod templates;
 mod text;
 
 use crate::folder::{self, FolderError, Owner};

@@ -1,0 +1,1 @@
+//! Diagrams of the techniques that are geometry, drawn from the cookbook's own functions.

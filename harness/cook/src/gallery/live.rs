@@ -1,0 +1,1 @@
+//! The frames that the live pages run.

@@ -1,0 +1,1 @@
+//! Property rows of every function, for "edit this function and check it" in the browser.

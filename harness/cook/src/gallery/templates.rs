@@ -1,0 +1,44 @@
+//! The site's templates: every tag of it is in `templates/`, and what Rust fills in is escaped there.
+
+use minijinja::value::{Serde, Value};
+use minijinja::{Environment, syntax::SyntaxConfig};
+use serde::Serialize;
+use std::sync::LazyLock;
+
+/// Every template: a line each.
+const TEXTS: &[(&str, &str)] = &[
+    ("base.html", include_str!("templates/base.html")),
+];
+
+static TEMPLATES: LazyLock<Environment<'static>> = LazyLock::new(|| {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
+    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_syntax(syntax.unwrap_or_else(|error| panic!("the default delimiters: {error:#}")));
+    for &(name, text) in TEXTS {
+        environment.add_template(name, text).unwrap_or_else(|error| panic!("templates/{name}: {error:#}"));
+    }
+    environment
+});
+
+/// Returns the template's HTML for these values; text among them is escaped.
+///
+/// # Panics
+/// Panics if the template asks for a value that is not there, which a test of its page finds.
+pub fn render(name: &str, values: impl Serialize) -> Markup {
+    let html = TEMPLATES
+        .get_template(name)
+        .and_then(|template| template.render(Serde(values)))
+        .unwrap_or_else(|error| panic!("templates/{name}: {error:#}"));
+    Markup(html)
+}
+
+/// HTML that a template takes as it is; everything else is escaped.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Markup(pub String);
+
+impl Serialize for Markup {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Value::from_safe_string(self.0.clone()).serialize(serializer)
+    }
+}
