@@ -91,6 +91,29 @@ impl Committed {
         }
     }
 
+    /// Returns the rung that draws it.
+    #[must_use]
+    pub fn rung(self) -> String {
+        match self {
+            Self::Shot(shot) if shot.rung == shots::BY_MATERIAL => {
+                format!("by material, quality {}", shot.quality)
+            }
+            Self::Shot(shot) => shot.rung.to_owned(),
+            Self::Strip => "by material".to_owned(),
+            Self::BesideWalks(_) => "several, beside random walks".to_owned(),
+        }
+    }
+
+    /// Returns how finely a pixel is sampled.
+    #[must_use]
+    pub fn samples(self) -> String {
+        match self {
+            Self::Shot(shot) if shot.samples == 1 => "1 sample a pixel".to_owned(),
+            Self::Shot(shot) => format!("{} samples a pixel", shot.samples * shot.samples),
+            Self::Strip | Self::BesideWalks(_) => "16 samples a pixel".to_owned(),
+        }
+    }
+
     /// Returns the folder of its files.
     #[must_use]
     pub fn folder(self) -> PathBuf {

@@ -1,20 +1,24 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
-use lapidary_cook::gallery::{self, Picture, Site};
+use lapidary_cook::cookbook;
+use lapidary_cook::gallery::{self, Site, pictures};
 use lapidary_cook::repository;
-use lapidary_cook::snapshot::{Committed, EXR_SIDE, WALKED};
+use lapidary_cook::snapshot::{Committed, WALKED};
 use lapidary_render::file;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
-/// Renders every picture and builds the gallery, a static page that needs no network.
+/// Builds the gallery, a static site that needs no network: every technique, module and picture.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook gallery --open")]
 pub(super) struct Arguments {
     /// Output folder; target/gallery of the cookbook by default.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Render the committed pictures anew on this device, instead of taking their files.
+    #[arg(long)]
+    render: bool,
     /// Show the gallery in the browser.
     #[arg(long)]
     open: bool,
@@ -24,41 +28,21 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let root = repository::required("gallery")?;
     let out = arguments.out.clone().unwrap_or_else(|| root.join("target/gallery"));
     let gpu = context.gpu()?;
+    let rustdoc = rustdoc(&root)?;
     let rendered = tempfile::tempdir()?;
-    let bar = progress::bar(Committed::COUNT as u64, "rendering");
-    let mut pictures = Vec::new();
-    for committed in Committed::all() {
-        bar.set_message(committed.name());
-        let path = rendered.path().join(format!("{}.png", committed.name()));
-        let [seen, _] = committed.render(gpu)?;
-        file::write(&seen, &path)?;
-        pictures.push(Picture {
-            title: committed.title().to_owned(),
-            file: path,
-            paragraph: committed.caption().to_owned(),
-            command: committed.command(),
-            size: (seen.width, seen.height),
-        });
-        bar.inc(1);
+    let mut sources = pictures::committed();
+    if arguments.render {
+        render(context, rendered.path(), &mut sources)?;
     }
     for reference in &WALKED {
-        let path = rendered.path().join(format!("{}_walked.png", reference.name()));
+        let path = rendered.path().join([&reference.name(), "_walked.png"].concat());
         file::write(&reference.picture(gpu)?, &path)?;
-        pictures.push(Picture {
-            title: reference.title.to_owned(),
-            file: path,
-            paragraph: format!(
-                "What random walks find, {} for each pixel: light that enters anywhere, is scattered inside and leaves towards the eye. \
-                 They know thickness and shadows, which no reflectance function does, and all ways, of which the cheapest is one.",
-                reference.walks
-            ),
-            command: reference.command(),
-            size: (EXR_SIDE, EXR_SIDE),
-        });
     }
+    sources.extend(pictures::walked(rendered.path()));
+    let bar = progress::bar(1, "writing");
+    let site = Site { root: &root, adapter: gpu.describe(), pictures: sources, rustdoc: Some(rustdoc), device: Some(gpu) };
+    let index = gallery::write(&out, &site)?;
     bar.finish_and_clear();
-    let figures = plots(&root);
-    let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &figures })?;
     let index = index.canonicalize().unwrap_or(index);
     output::line(&index.display().to_string())?;
     if arguments.open {
@@ -67,87 +51,37 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     Ok(Outcome::Passed)
 }
 
-/// Committed plots, each with the name of its module or recipe. Measuring again takes minutes and a
-/// quiet machine.
-fn plots(root: &Path) -> Vec<(String, Picture)> {
-    let figure = |name: &str, file: &str, command: &str, title: &str, paragraph: &str| {
-        let picture = Picture {
-            title: title.to_owned(),
-            file: root.join("docs/measurements").join(file),
-            paragraph: paragraph.to_owned(),
-            command: command.to_owned(),
-            size: PLOT_SIZE,
-        };
-        (name.to_owned(), picture)
-    };
-    let gem = "./cook cost gem --out docs/measurements/lavapipe";
-    let sphere = "./cook cost sphere --out docs/measurements/random_walk";
-    let cdrf = "./cook cost cdrf --out docs/measurements/lavapipe";
-    let paths = "./cook cost optical_path --out docs/measurements/lavapipe";
-    vec![
-        figure(
-            "gem",
-            "lavapipe/gem_flip.svg",
-            gem,
-            "What accuracy costs: FLIP",
-            "Time of a picture against its visible difference from the spectral reference, means over seven views. On the grey line lie the \
-                rungs to choose from: nothing faster is better.",
-        ),
-        figure(
-            "gem",
-            "lavapipe/gem_rmse.svg",
-            gem,
-            "What accuracy costs: RMSE",
-            "The same by the error in linear radiance.",
-        ),
-        figure(
-            "gem",
-            "lavapipe/gem_growth.svg",
-            gem,
-            "What facets cost",
-            "Time of a frame that a brilliant fills against the number of its facets, eight hits. The walk's time hardly depends on it.",
-        ),
-        figure(
-            "cdrf",
-            "lavapipe/cdrf.svg",
-            cdrf,
-            "What accuracy costs",
-            "Time of a frame that lit skin fills against the largest error of the reflectance. On the grey lines lie the rungs to choose from: \
-                nothing faster is better.",
-        ),
-        figure(
-            "optical_path",
-            "lavapipe/optical_path_error.svg",
-            paths,
-            "What accuracy costs",
-            "Time of a frame of the bunny against the error of the cost on the ball, which has a closed form, by solver and size of the grid. On \
-                the grey line lie the rungs to choose from: nothing faster is better.",
-        ),
-        figure(
-            "optical_path",
-            "lavapipe/optical_path_growth.svg",
-            paths,
-            "How the time grows",
-            "Time against the cells along an edge of the grid: solvers that look at every voxel in every pass grow faster than those that \
-                look at what changes.",
-        ),
-        figure(
-            "cdrf",
-            "random_walk/sphere_sigma.svg",
-            sphere,
-            "The best width over the radius",
-            "Width times radius, in mean free paths, that brings the function nearest to random walks through spheres. Were the width \
-                proportional to curvature, lines would be level.",
-        ),
-        figure(
-            "cdrf",
-            "random_walk/sphere_profile.svg",
-            sphere,
-            "Spheres and the best function",
-            "The scattered light that leaves a sphere by the angle from the light, as random walks give it with their standard errors, and the \
-                function that comes nearest.",
-        ),
-    ]
+/// Renders the committed pictures into a folder, and takes their files instead of the committed ones.
+fn render(context: &Context, folder: &Path, sources: &mut [pictures::Source]) -> Result<(), Failure> {
+    let gpu = context.gpu()?;
+    let bar = progress::bar(Committed::COUNT as u64, "rendering");
+    for (committed, source) in Committed::all().zip(sources) {
+        bar.set_message(committed.name());
+        let [seen, _] = committed.render(gpu)?;
+        source.file = folder.join([committed.name(), ".png"].concat());
+        file::write(&seen, &source.file)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+/// Lets rustdoc write the mirrors' documentation, and returns its folder.
+fn rustdoc(root: &Path) -> Result<PathBuf, Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    // A target folder of its own: it holds these crates alone, whatever else was documented.
+    let target = root.join("target/rustdoc");
+    let mut command = Command::new(cargo);
+    command.current_dir(root).args(["doc", "--no-deps", "--quiet", "--lib", "--target-dir"]).arg(&target);
+    command.args(cookbook::modules().iter().flat_map(|module| {
+        ["--package".to_owned(), ["lapidary-", &module.name.replace('_', "-")].concat()]
+    }));
+    command.args(["--package", "lapidary-wgsl"]).stdout(Stdio::null());
+    match command.status() {
+        Ok(status) if status.success() => Ok(target.join("doc")),
+        Ok(_) => Err(Failure("cargo doc failed for the mirrors; its messages are above".to_owned())),
+        Err(error) => Err(Failure(format!("cargo doc cannot be run for the mirrors: {error}"))),
+    }
 }
 
 /// Opens the page with the system's default program.

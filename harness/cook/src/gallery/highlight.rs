@@ -1,36 +1,37 @@
-//! WGSL as HTML: escaped, with classes for comments, keywords, types, numbers, attributes and
-//! declared names. No text is added: without its tags the HTML is the original source, as the copy
-//! button requires.
+//! WGSL and Rust in colours: the source cut into pieces with classes for comments, keywords, types,
+//! numbers, attributes and declared names. The pieces' texts in a row are the source, as the copy button
+//! requires.
 
-use super::text::escape;
+use serde::Serialize;
 
-const KEYWORDS: [&str; 26] = [
-    "alias",
-    "break",
-    "case",
-    "const",
-    "const_assert",
-    "continue",
-    "continuing",
-    "default",
-    "diagnostic",
-    "discard",
-    "else",
-    "enable",
-    "false",
-    "fn",
-    "for",
-    "if",
-    "let",
-    "loop",
-    "override",
-    "requires",
-    "return",
-    "struct",
-    "switch",
-    "true",
-    "var",
+/// The language of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// WGSL.
+    Wgsl,
+    /// Rust.
+    Rust,
+}
+
+/// A piece of a source. Classes: `c` comment, `k` keyword, `t` type, `n` number, `a` attribute, `d` name of a
+/// declared function, struct or constant.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Piece<'a> {
+    /// The class, if the text has a colour of its own.
+    pub class: Option<char>,
+    /// The text.
+    pub text: &'a str,
+}
+
+const WGSL_KEYWORDS: &[&str] = &[
+    "alias", "break", "case", "const", "const_assert", "continue", "continuing", "default", "diagnostic", "discard", "else",
+    "enable", "false", "fn", "for", "if", "let", "loop", "override", "requires", "return", "struct", "switch", "true", "var",
     "while",
+];
+
+const RUST_KEYWORDS: &[&str] = &[
+    "as", "break", "const", "continue", "else", "enum", "false", "fn", "for", "if", "impl", "in", "let", "loop", "match", "mod",
+    "mut", "pub", "return", "self", "static", "struct", "true", "type", "use", "while",
 ];
 
 /// Built-in types; matrices and vectors are recognised by their first letters, structs by their
@@ -38,30 +39,36 @@ const KEYWORDS: [&str; 26] = [
 const TYPES: [&str; 10] =
     ["array", "atomic", "bool", "f16", "f32", "i32", "ptr", "sampler", "sampler_comparison", "u32"];
 
-/// Returns the source as HTML, for a `<code>` element. Classes: `c` comment, `k` keyword, `t` type,
-/// `n` number, `a` attribute, `d` name of a declared function, struct or constant.
-pub fn wgsl(source: &str) -> String {
-    let mut html = String::with_capacity(source.len() * 2);
-    let mut rest = source;
+/// Cuts a source into pieces; neighbours without a colour are one.
+pub fn pieces(source: &str, language: Language) -> Vec<Piece<'_>> {
+    let mut pieces = Vec::new();
     let mut declares = false;
-    while !rest.is_empty() {
-        let (length, class) = token(rest);
-        let (text, after) = rest.split_at(length);
+    let (mut at, mut plain) = (0, 0);
+    while at < source.len() {
+        let (length, class) = token(&source[at..]);
+        let text = &source[at..at + length];
         let class = match class {
             Some('i') if declares => Some('d'),
-            Some('i') => word_class(text),
+            Some('i') => word_class(text, language),
             other => other,
         };
         if !text.trim().is_empty() && class != Some('c') {
-            declares = matches!(text, "fn" | "struct" | "const" | "override" | "alias");
+            declares = matches!(text, "fn" | "struct" | "const" | "override" | "alias" | "enum");
         }
-        match class {
-            Some(class) => html.push_str(&format!("<span class=\"{class}\">{}</span>", escape(text))),
-            None => html.push_str(&escape(text)),
+        at += length;
+        if class.is_some() {
+            let start = at - length;
+            if plain < start {
+                pieces.push(Piece { class: None, text: &source[plain..start] });
+            }
+            pieces.push(Piece { class, text });
+            plain = at;
         }
-        rest = after;
     }
-    html
+    if plain < source.len() {
+        pieces.push(Piece { class: None, text: &source[plain..] });
+    }
+    pieces
 }
 
 /// Returns the length in bytes of the first token of a non-empty text, at least 1, and its class;
@@ -121,14 +128,18 @@ fn number(text: &str) -> usize {
     at
 }
 
-fn word_class(word: &str) -> Option<char> {
+fn word_class(word: &str, language: Language) -> Option<char> {
+    let keywords = match language {
+        Language::Wgsl => WGSL_KEYWORDS,
+        Language::Rust => RUST_KEYWORDS,
+    };
     let shaped =
         |prefix: &str| word.strip_prefix(prefix).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
     let built_in = TYPES.contains(&word) || shaped("vec") || shaped("mat") || word.starts_with("texture_");
     // A name that starts with a capital is a struct's, unless it is all capitals: then it is a
     // constant's.
     let structure = word.starts_with(char::is_uppercase) && word.contains(char::is_lowercase);
-    if KEYWORDS.contains(&word) {
+    if keywords.contains(&word) {
         Some('k')
     } else if built_in || structure {
         Some('t')
@@ -141,56 +152,46 @@ fn word_class(word: &str) -> Option<char> {
 mod tests {
     use super::*;
 
-    /// Returns the text of an HTML fragment, like a browser's `textContent`.
-    fn text_of(html: &str) -> String {
-        let mut text = String::new();
-        let mut rest = html;
-        while let Some((before, tag)) = rest.split_once('<') {
-            text.push_str(before);
-            rest = tag.split_once('>').expect("a tag closes").1;
-        }
-        text.push_str(rest);
-        text.replace("&lt;", "<")
-            .replace("&gt;", ">")
-            .replace("&quot;", "\"")
-            .replace("&#39;", "'")
-            .replace("&amp;", "&")
+    /// Returns the classes and texts of what has a colour.
+    fn coloured(source: &str, language: Language) -> Vec<(char, &str)> {
+        pieces(source, language).into_iter().filter_map(|piece| Some((piece.class?, piece.text))).collect()
     }
 
     #[test]
-    fn without_its_tags_it_is_the_source_again() {
+    fn the_pieces_in_a_row_are_the_source() {
         let odd =
             "/* a /* nested */ b */ fn f(a: ptr<function, vec3f>) -> f32 { return *a.x & 0x1.8p-3f; } // λ² <b>&amp;";
         let mut sources = vec![odd, "", "\n\n", "/* open", "/", "@", "1e", "a\r\n", "é_ü1 + .5f", "\"quote\" 'q'"];
         sources.extend(crate::cookbook::modules().iter().map(|module| module.source));
         for source in sources {
-            assert_eq!(text_of(&wgsl(source)), source);
+            for language in [Language::Wgsl, Language::Rust] {
+                let text: String = pieces(source, language).iter().map(|piece| piece.text).collect();
+                assert_eq!(text, source);
+            }
         }
     }
 
     #[test]
     fn classes_are_told_apart() {
-        let html = wgsl("@compute fn main(x: vec3<f32>, y: MyHit) { let z = 1e-6f - LIMIT; } // fn");
-        for part in [
-            "<span class=\"a\">@compute</span>",
-            "<span class=\"k\">fn</span> <span class=\"d\">main</span>(",
-            "<span class=\"t\">vec3</span>&lt;<span class=\"t\">f32</span>&gt;",
-            "<span class=\"t\">MyHit</span>",
-            "<span class=\"n\">1e-6f</span> - LIMIT",
-            "<span class=\"c\">// fn</span>",
-        ] {
-            assert!(html.contains(part), "{part} is not in {html}");
-        }
+        let source = "@compute fn main(x: vec3<f32>, y: MyHit) { let z = 1e-6f - LIMIT; } // fn";
+        let expected = [
+            ('a', "@compute"),
+            ('k', "fn"),
+            ('d', "main"),
+            ('t', "vec3"),
+            ('t', "f32"),
+            ('t', "MyHit"),
+            ('k', "let"),
+            ('n', "1e-6f"),
+            ('c', "// fn"),
+        ];
+        assert_eq!(coloured(source, Language::Wgsl), expected);
+        assert_eq!(coloured("pub fn f(mut a: Vec3)", Language::Rust)[..3], [('k', "pub"), ('k', "fn"), ('d', "f")]);
+        assert_eq!(coloured("pub mut", Language::Wgsl), []);
     }
 
     #[test]
     fn a_nested_block_comment_ends_where_its_outermost_does() {
-        let html = wgsl("/* a /* b */ c */ let");
-        assert_eq!(html, "<span class=\"c\">/* a /* b */ c */</span> <span class=\"k\">let</span>");
-    }
-
-    #[test]
-    fn nothing_of_the_source_becomes_markup() {
-        assert!(!wgsl("// <script>alert(1)</script>").contains("<script"));
+        assert_eq!(coloured("/* a /* b */ c */ let", Language::Wgsl), [('c', "/* a /* b */ c */"), ('k', "let")]);
     }
 }

@@ -1,1 +1,231 @@
-//! The ladders' plots and tables, in the page's own colours, and the pictures of their rungs.
+//! The ladders' plots and tables, in the page's own colours, and the pictures of their rungs, any two of which can be
+//! compared.
+//!
+//! Errors and times are those of the committed ladders ([`lapidary_plan::ladder`]), by which defaults are chosen.
+
+mod axis;
+mod kind;
+mod pictures;
+mod plot;
+#[cfg(test)]
+mod tests;
+
+pub use kind::{KINDS, Kind};
+pub use pictures::{LadderPictures, REFERENCE, RungPicture, pictures};
+
+use super::templates::{self, Markup};
+use crate::cost::{CostError, Report};
+use crate::snapshot::SnapshotError;
+use lapidary_plan::Quality;
+use lapidary_plan::ladder::Step;
+use lapidary_render::{RenderError, file::FileError};
+use plot::{Drawing, Point};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Why the ladders could not be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum LadderError {
+    /// A committed report or reference is missing or damaged.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+    /// A committed reference is damaged.
+    #[error(transparent)]
+    Reference(#[from] SnapshotError),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A picture could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A folder could not be made.
+    #[error("{}: cannot be made: {error}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The system's error.
+        error: std::io::Error,
+    },
+}
+
+/// What the template shows of a ladder.
+#[derive(Serialize)]
+struct Shown<'a> {
+    name: &'a str,
+    title: &'a str,
+    paragraph: &'a str,
+    /// What the error axis shows.
+    error: &'a str,
+    /// The device that the times were measured on.
+    adapter: &'a str,
+    /// What was timed, and over what is averaged.
+    measured: String,
+    /// The report's file, and the command that measures it again.
+    report: &'a str,
+    drawings: Vec<Drawing>,
+    series: Vec<Series>,
+    rows: Vec<Row<'a>>,
+    /// Whether the table has a column of frames that the stone fills.
+    filled: bool,
+    compare: Option<Compare<'a>>,
+}
+
+/// A series of the legend.
+#[derive(Serialize)]
+struct Series {
+    name: &'static str,
+    mark: &'static str,
+}
+
+/// A line of the table.
+#[derive(Serialize)]
+struct Row<'a> {
+    rung: &'a str,
+    error: String,
+    worst: String,
+    ms: String,
+    /// Milliseconds of a frame of 1920 by 1080 pixels that the stone fills; empty if that was not measured.
+    filled: String,
+    qualities: String,
+    front: bool,
+    paper: bool,
+    href: Option<String>,
+}
+
+/// The pictures to compare, and which two are shown at first.
+#[derive(Serialize)]
+struct Compare<'a> {
+    scene: &'a str,
+    left: String,
+    right: String,
+    pictures: Vec<Compared<'a>>,
+}
+
+#[derive(Serialize)]
+struct Compared<'a> {
+    #[serde(flatten)]
+    picture: &'a RungPicture,
+    href: String,
+    alt: String,
+    /// Its error and its time, in words; empty for the reference and what the ladder did not measure.
+    figures: String,
+    /// The option's text.
+    choice: String,
+    /// Whether it is on the front, a default, the paper's or the reference.
+    chosen: bool,
+}
+
+/// Returns a ladder's plot, its table, and the slider between any two of its pictures. `root` leads from the page to
+/// the site's folder, and is empty or ends in `/`. Without pictures there is no slider, and points lead nowhere.
+///
+/// # Errors
+/// Returns an error if the committed report is missing or damaged.
+pub fn section(kind: &Kind, pictures: &[RungPicture], root: &str) -> Result<Markup, LadderError> {
+    let report = kind.report()?;
+    Ok(templates::render("ladder.html", Shown::of(kind, &report, pictures, root)))
+}
+
+impl<'a> Shown<'a> {
+    fn of(kind: &'a Kind, report: &'a Report, pictures: &'a [RungPicture], root: &str) -> Self {
+        let steps = kind.steps();
+        let href = |rung: &str| {
+            let picture = pictures.iter().find(|picture| picture.rung == rung)?;
+            Some(format!("{root}{}", picture.file))
+        };
+        let points: Vec<Point> = steps.iter().map(|step| point(kind, step, href(&step.rung))).collect();
+        let (side, views) = kind.measured(report);
+        let rounds = report.setting("rounds");
+        let series = kind.series.iter().zip(plot::MARKS);
+        let filled = |rung: &str| report.ms(rung, "filled", "time").filter(|_| kind.name == "convex");
+        Self {
+            name: kind.name,
+            title: kind.title,
+            paragraph: kind.paragraph,
+            error: kind.error,
+            adapter: &report.adapter,
+            measured: format!(
+                "pictures of {side} × {side} pixels, one sample each, the least of {rounds} rounds; means over {} views: {}",
+                views.len(),
+                views.join(", ")
+            ),
+            report: kind.report,
+            drawings: plot::drawings(&points),
+            series: series.map(|((_, name), mark)| Series { name, mark }).collect(),
+            filled: steps.iter().any(|step| filled(&step.rung).is_some()),
+            rows: steps
+                .iter()
+                .map(|step| Row {
+                    rung: &step.rung,
+                    error: figure(step.error),
+                    worst: figure(step.worst),
+                    ms: format!("{:.1}", step.ms),
+                    filled: filled(&step.rung).map_or_else(String::new, |ms| format!("{ms:.0}")),
+                    qualities: qualities(kind, &step.rung).join(", "),
+                    front: is_front(kind, step),
+                    paper: kind.paper.contains(&step.rung.as_str()),
+                    href: href(&step.rung),
+                })
+                .collect(),
+            compare: Compare::of(kind, &steps, pictures, root),
+        }
+    }
+}
+
+impl<'a> Compare<'a> {
+    fn of(kind: &'a Kind, steps: &[&Step], pictures: &'a [RungPicture], root: &str) -> Option<Self> {
+        let has = |rung: &str| pictures.iter().any(|picture| picture.rung == rung);
+        let fast = kind.technique.rung(Quality::Fast).to_string();
+        // The paper's rung, or else the cheapest, beside what is chosen if nothing is asked for.
+        let left = kind.paper.iter().map(|rung| (*rung).to_owned()).find(|rung| has(rung)).unwrap_or(fast);
+        let right = kind.technique.rung(Quality::Good).to_string();
+        let pair = [left, right].map(|rung| if has(&rung) { rung } else { pictures.first().map_or_else(String::new, |first| first.rung.clone()) });
+        let [left, right] = pair;
+        let compared = |picture: &'a RungPicture| {
+            let step = steps.iter().find(|step| step.rung == picture.rung);
+            let figures = step.map_or_else(String::new, |step| {
+                format!("{} {}, {:.1} ms in the ladder’s mean", kind.error, figure(step.error), step.ms)
+            });
+            let qualities = qualities(kind, &picture.rung).join(", ");
+            Compared {
+                picture,
+                href: format!("{root}{}", picture.file),
+                alt: format!("{} drawn by {}", kind.scene(), picture.rung),
+                figures,
+                choice: if qualities.is_empty() { picture.rung.clone() } else { format!("{} ({qualities})", picture.rung) },
+                chosen: picture.rung == REFERENCE || pictures::is_chosen(kind, &picture.rung),
+            }
+        };
+        let pictures: Vec<Compared<'_>> = pictures.iter().map(compared).collect();
+        (!pictures.is_empty()).then(|| Self { scene: kind.scene(), left, right, pictures })
+    }
+}
+
+/// Returns the qualities that choose a rung.
+fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
+    let chosen = Quality::ALL.into_iter().filter(|quality| kind.technique.rung(*quality).to_string() == rung);
+    chosen.map(Quality::name).collect()
+}
+
+fn is_front(kind: &Kind, step: &Step) -> bool {
+    kind.ladder().is_some_and(|ladder| ladder.hull().iter().any(|other| other.rung == step.rung))
+}
+
+fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
+    let qualities = qualities(kind, &step.rung);
+    let default = if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
+    Point {
+        rung: step.rung.clone(),
+        ms: step.ms,
+        error: step.error,
+        series: kind.series_of(&step.rung) + 1,
+        front: is_front(kind, step),
+        title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
+        qualities,
+        href,
+    }
+}
+
+/// Shows an error with three digits.
+fn figure(error: f64) -> String {
+    if error >= 10.0 { format!("{error:.1}") } else if error >= 1.0 { format!("{error:.2}") } else { format!("{error:.3}") }
+}

@@ -2,22 +2,62 @@
 //! browsers typeset themselves.
 
 use super::{
-    highlight,
-    text::{escape, slug},
+    highlight::{self, Language, Piece},
+    templates::{self, Markup},
+    text::slug,
 };
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 use pulldown_latex::config::{DisplayMode, RenderConfig};
+use serde::Serialize;
 use std::convert::Infallible;
 
-/// The parts of a module's doc page as HTML; parts that the page does not have are empty.
+/// A doc page as HTML; parts that it does not have are empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Page {
+    /// The title, of its first heading.
+    pub title: String,
     /// The first paragraph, a `<p>`.
-    pub lead: String,
+    pub lead: Markup,
+    /// The first paragraph as plain text.
+    pub summary: String,
     /// The first display equation.
-    pub equation: String,
-    /// Everything else except the title, with headings one level lower.
-    pub rest: String,
+    pub equation: Markup,
+    /// Everything else, with headings as they are.
+    pub rest: Markup,
+    /// The headings of the rest.
+    pub headings: Vec<Heading>,
+}
+
+/// A heading of a page.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Heading {
+    /// Its level, from 2.
+    pub level: usize,
+    /// Its anchor.
+    pub id: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// A picture in a text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Image {
+    /// Where the large picture is, from the page.
+    pub file: String,
+    /// Where the small one is.
+    pub thumb: String,
+    /// Width in pixels of the large one.
+    pub width: u32,
+    /// Its height.
+    pub height: u32,
+}
+
+/// Where a page's links lead.
+pub trait Links {
+    /// Returns the address of what a link's target is on the site; `None` if the site does not have it.
+    fn page(&self, target: &str) -> Option<String>;
+    /// Returns the picture of that target; `None` if the site does not have it.
+    fn image(&self, target: &str) -> Option<Image>;
 }
 
 /// An error for LaTeX that could not be converted.
@@ -28,38 +68,66 @@ pub struct MathError {
     reason: String,
 }
 
-/// Renders the doc page of `module`.
+/// Renders a doc page.
 ///
-/// Links between pages lead to the modules' sections; other relative links and images, which would
-/// be broken in the gallery, become text, and raw HTML is shown as text. LaTeX that cannot be
-/// converted is shown as source.
-pub fn page(source: &str, module: &str) -> Page {
+/// Links and pictures that the site does not have become text, and raw HTML is shown as text. LaTeX that
+/// cannot be converted is shown as source.
+pub fn page(source: &str, links: &dyn Links) -> Page {
     let mut page = Page::default();
     let mut under_heading = false;
     for block in blocks(source) {
         match block.first() {
-            Some(Event::Start(Tag::Heading { level: HeadingLevel::H1, .. })) => continue,
-            Some(Event::Start(Tag::Heading { .. })) => under_heading = true,
+            Some(Event::Start(Tag::Heading { level: HeadingLevel::H1, .. })) => {
+                page.title = text_of(&block);
+                continue;
+            }
+            Some(Event::Start(Tag::Heading { level, .. })) => {
+                under_heading = true;
+                let text = text_of(&block);
+                page.headings.push(Heading { level: *level as usize, id: slug(&text), text });
+            }
             Some(Event::Start(Tag::Paragraph)) if !under_heading => {
-                let equation = is_equation(&block);
-                let place = if equation { &mut page.equation } else { &mut page.lead };
-                if place.is_empty() {
-                    *place = render(block, module);
+                if is_equation(&block) && page.equation.0.is_empty() {
+                    page.equation = render(block, links);
+                    continue;
+                }
+                if page.lead.0.is_empty() && !is_equation(&block) {
+                    page.summary = text_of(&block);
+                    page.lead = render(block, links);
                     continue;
                 }
             }
             _ => {}
         }
-        if page.equation.is_empty() {
+        if page.equation.0.is_empty() {
             let first = block.iter().find_map(|event| match event {
                 Event::DisplayMath(latex) => Some(display(latex)),
                 _ => None,
             });
-            page.equation = first.map(|html| format!("<p>{html}</p>\n")).unwrap_or_default();
+            if let Some(markup) = first {
+                page.equation = part(Part { kind: "paragraph", markup: Some(markup), ..Part::default() });
+            }
         }
-        page.rest.push_str(&render(block, module));
+        page.rest.0.push_str(&render(block, links).0);
     }
     page
+}
+
+/// A part of a page, by kind, with what its template fills in.
+#[derive(Default, Serialize)]
+struct Part<'a> {
+    kind: &'a str,
+    id: &'a str,
+    text: &'a str,
+    level: usize,
+    pieces: Vec<Piece<'a>>,
+    target: &'a str,
+    picture: Option<Image>,
+    markup: Option<Markup>,
+}
+
+fn part(part: Part<'_>) -> Markup {
+    templates::render("markdown.html", part)
 }
 
 /// Converts LaTeX to a `<math>` element, with its source as an annotation.
@@ -71,7 +139,7 @@ pub fn math(latex: &str, display_mode: DisplayMode) -> Result<String, MathError>
         .map_err(|reason| error(reason.to_string()))?;
     let mut html = String::new();
     // The writer does not escape an annotation.
-    let annotation = escape(latex.trim());
+    let annotation = templates::escaped(latex.trim());
     let config = RenderConfig { display_mode, annotation: Some(&annotation), ..RenderConfig::default() };
     pulldown_latex::push_mathml(&mut html, events.into_iter().map(Ok::<_, Infallible>), config)
         .map_err(|reason| error(reason.to_string()))?;
@@ -111,38 +179,50 @@ fn is_equation(block: &[Event<'_>]) -> bool {
         })
 }
 
-fn display(latex: &str) -> String {
-    let inner = math(latex, DisplayMode::Block).unwrap_or_else(|_| format!("<code>{}</code>", escape(latex.trim())));
-    format!("<span class=\"equation scroll\">{inner}</span>")
+fn display(latex: &str) -> Markup {
+    let markup = math(latex, DisplayMode::Block).ok().map(Markup);
+    part(Part { kind: "equation", text: latex.trim(), markup, ..Part::default() })
 }
 
-fn render(block: Vec<Event<'_>>, module: &str) -> String {
+fn formula(latex: &str) -> Markup {
+    let markup = math(latex, DisplayMode::Inline).ok().map(Markup);
+    part(Part { kind: "formula", text: latex, markup, ..Part::default() })
+}
+
+fn render(block: Vec<Event<'_>>, links: &dyn Links) -> Markup {
     if let [Event::Start(Tag::HtmlBlock), Event::Html(text), ..] = block.as_slice()
         && text.trim_start().starts_with("<!--")
     {
-        return String::new();
+        return Markup::default();
     }
-    let heading = heading_text(&block);
+    let heading = text_of(&block);
+    let anchor = slug(&heading);
     let mut events: Vec<Event<'_>> = Vec::with_capacity(block.len());
     let mut code: Option<(String, String)> = None;
+    // A picture's place, while its description is read.
+    let mut image: Option<(Option<Image>, String)> = None;
     // Whether each open link is kept.
-    let mut links = Vec::new();
+    let mut kept = Vec::new();
     for event in block {
         if let (Some((_, text)), Event::Text(more)) = (&mut code, &event) {
             text.push_str(more);
             continue;
         }
+        if let (Some((_, text)), Event::Text(more) | Event::Code(more)) = (&mut image, &event) {
+            text.push_str(more);
+            continue;
+        }
         let written = match event {
             Event::Start(Tag::Heading { level, .. }) => {
-                let level = (level as usize + 1).min(6);
-                raw(format!("<h{level} id=\"{}\">", escape(&format!("{module}-{}", slug(&heading)))))
+                part(Part { kind: "heading", level: level as usize, id: &anchor, ..Part::default() })
             }
-            Event::End(TagEnd::Heading(level)) => {
-                let anchor = escape(&format!("{module}-{}", slug(&heading)));
-                let level = (level as usize + 1).min(6);
-                let name = escape(&format!("Link to {heading}"));
-                raw(format!(" <a class=\"anchor\" href=\"#{anchor}\" aria-label=\"{name}\">#</a></h{level}>\n"))
-            }
+            Event::End(TagEnd::Heading(level)) => part(Part {
+                kind: "heading end",
+                level: level as usize,
+                id: &anchor,
+                text: &heading,
+                ..Part::default()
+            }),
             Event::Start(Tag::CodeBlock(kind)) => {
                 let language = match kind {
                     CodeBlockKind::Fenced(language) => language.to_string(),
@@ -153,67 +233,86 @@ fn render(block: Vec<Event<'_>>, module: &str) -> String {
             }
             Event::End(TagEnd::CodeBlock) => {
                 let (language, text) = code.take().unwrap_or_default();
-                let text = if language == "wgsl" { highlight::wgsl(&text) } else { escape(&text) };
-                raw(format!("<pre class=\"listing scroll\"><code>{text}</code></pre>\n"))
+                let pieces = match language.as_str() {
+                    "wgsl" => highlight::pieces(&text, Language::Wgsl),
+                    "rust" => highlight::pieces(&text, Language::Rust),
+                    _ => vec![Piece { class: None, text: &text }],
+                };
+                part(Part { kind: "code", pieces, ..Part::default() })
             }
             Event::Start(Tag::Table(_)) => {
-                events.push(raw("<div class=\"table scroll\">".to_owned()));
-                event
+                events.push(raw(part(Part { kind: "table", ..Part::default() })));
+                events.push(event);
+                continue;
             }
             Event::End(TagEnd::Table) => {
                 events.push(event);
-                raw("</div>\n".to_owned())
+                part(Part { kind: "table end", ..Part::default() })
             }
             Event::Start(Tag::Link { dest_url, .. }) => {
-                let target = link(&dest_url);
-                links.push(target.is_some());
-                raw(target.map(|target| format!("<a href=\"{}\">", escape(&target))).unwrap_or_default())
+                let target = address(&dest_url, links);
+                kept.push(target.is_some());
+                match &target {
+                    Some(target) => part(Part { kind: "link", target, ..Part::default() }),
+                    None => continue,
+                }
             }
-            Event::End(TagEnd::Link) => raw(if links.pop() == Some(true) { "</a>" } else { "" }.to_owned()),
-            Event::Start(Tag::Image { .. }) => raw("<em>".to_owned()),
-            Event::End(TagEnd::Image) => raw("</em>".to_owned()),
-            Event::DisplayMath(latex) => raw(display(&latex)),
-            Event::InlineMath(latex) => {
-                raw(math(&latex, DisplayMode::Inline).unwrap_or_else(|_| format!("<code>{}</code>", escape(&latex))))
+            Event::End(TagEnd::Link) => match kept.pop() {
+                Some(true) => part(Part { kind: "link end", ..Part::default() }),
+                _ => continue,
+            },
+            Event::Start(Tag::Image { dest_url, .. }) => {
+                image = Some((links.image(&dest_url), String::new()));
+                continue;
             }
+            Event::End(TagEnd::Image) => match image.take() {
+                // A picture within a link is a link already.
+                Some((Some(picture), text)) => {
+                    part(Part { kind: "image", text: &text, picture: Some(picture), ..Part::default() })
+                }
+                _ => continue,
+            },
+            Event::DisplayMath(latex) => display(&latex),
+            Event::InlineMath(latex) => formula(&latex),
             Event::InlineHtml(text) if text.starts_with("<!--") => continue,
-            Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
-            other => other,
+            Event::Html(text) | Event::InlineHtml(text) => {
+                events.push(Event::Text(text));
+                continue;
+            }
+            other => {
+                events.push(other);
+                continue;
+            }
         };
-        events.push(written);
+        events.push(raw(written));
     }
     let mut written = String::new();
     html::push_html(&mut written, events.into_iter());
-    written
+    Markup(written)
 }
 
-fn raw(html: String) -> Event<'static> {
-    Event::InlineHtml(CowStr::from(html))
+fn raw(html: Markup) -> Event<'static> {
+    Event::InlineHtml(CowStr::from(html.0))
 }
 
-/// Returns the text of a heading block.
-fn heading_text(block: &[Event<'_>]) -> String {
-    match block.first() {
-        Some(Event::Start(Tag::Heading { .. })) => block
-            .iter()
-            .filter_map(|event| match event {
-                Event::Text(text) | Event::Code(text) | Event::InlineMath(text) => Some(text.as_ref()),
-                _ => None,
-            })
-            .collect(),
-        _ => String::new(),
-    }
+/// Returns the text of a block.
+fn text_of(block: &[Event<'_>]) -> String {
+    let texts = block.iter().filter_map(|event| match event {
+        Event::Text(text) | Event::Code(text) | Event::InlineMath(text) => Some(text.as_ref()),
+        Event::SoftBreak | Event::HardBreak => Some(" "),
+        _ => None,
+    });
+    texts.collect()
 }
 
-/// Returns the gallery's target for a link of a doc page; `None` if there is none.
-fn link(target: &str) -> Option<String> {
+/// Returns where a link leads; `None` if the site does not have it.
+fn address(target: &str, links: &dyn Links) -> Option<String> {
     if target.starts_with("https://") || target.starts_with("http://") {
         return Some(target.to_owned());
     }
     let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-    let name = file.trim_start_matches("./").strip_suffix(".md")?;
-    crate::cookbook::module(name)?;
-    Some(if anchor.is_empty() { format!("#{name}") } else { format!("#{name}-{anchor}") })
+    let page = if file.is_empty() { String::new() } else { links.page(file)? };
+    Some(if anchor.is_empty() { page } else { [&page, "#", &slug(anchor)].concat() })
 }
 
 #[cfg(test)]
@@ -237,35 +336,52 @@ by x -->
 |---|---|
 | 1 | 2 |
 
-See [it](srgb.md), [web](https://x.org/?a&b), [lost](../x.rs), vec3<f32>, <script>x</script>.
+See [it](srgb.md#hard-cases), [web](https://x.org/?a&b), [lost](../x.rs), vec3<f32>, <script>x</script>.
+![a `stone`](stone.png) ![lost](lost.png)
 
 ```wgsl
 fn f() {}
 ```
 ";
 
+    struct Few;
+
+    impl Links for Few {
+        fn page(&self, target: &str) -> Option<String> {
+            (target == "srgb.md").then(|| "../modules/srgb.html".to_owned())
+        }
+
+        fn image(&self, target: &str) -> Option<Image> {
+            let (file, thumb) = ("stone.png".to_owned(), "small.jpg".to_owned());
+            (target == "stone.png").then_some(Image { file, thumb, width: 2, height: 1 })
+        }
+    }
+
     #[test]
     fn a_page_falls_into_lead_equation_and_rest() {
-        let page = page(PAGE, "fresnel");
-        assert!(page.lead.starts_with("<p>Lead with <code>&lt;f32&gt;</code>, <math"), "{}", page.lead);
-        assert!(page.equation.contains("<mfrac"), "{}", page.equation);
-        assert!(!page.rest.contains("<mfrac") && !page.rest.contains("<h1") && !page.rest.contains("generated"));
+        let page = page(PAGE, &Few);
+        assert_eq!((page.title.as_str(), page.headings.len()), ("fresnel", 1));
+        let (lead, equation, rest) = (page.lead.0, page.equation.0, page.rest.0);
+        assert!(lead.starts_with("<p>Lead with <code>&lt;f32&gt;</code>, <math"), "{lead}");
+        assert!(equation.contains("<mfrac"), "{equation}");
+        assert!(!rest.contains("<mfrac") && !rest.contains("<h1") && !rest.contains("generated"));
         for part in [
             "<p>More.</p>",
-            "<h3 id=\"fresnel-hard-cases\">Hard cases <a class=\"anchor\" href=\"#fresnel-hard-cases\"",
+            "<h2 id=\"hard-cases\">Hard cases<a class=\"anchor\" href=\"#hard-cases\"",
             "<div class=\"table scroll\"><table>",
-            "<a href=\"#srgb\">it</a>",
+            "<a href=\"../modules/srgb.html#hard-cases\">it</a>",
             "<a href=\"https://x.org/?a&amp;b\">web</a>",
             ", lost, vec3&lt;f32&gt;, &lt;script&gt;x",
+            "<img src=\"small.jpg\" width=\"2\" height=\"1\" loading=\"lazy\" alt=\"a stone\">",
             "<span class=\"k\">fn</span>",
         ] {
-            assert!(page.rest.contains(part), "{part} is not in {}", page.rest);
+            assert!(rest.contains(part), "{part} is not in {rest}");
         }
     }
 
     #[test]
     fn what_a_page_lacks_is_empty() {
-        assert_eq!(page("# srgb\n", "srgb"), Page::default());
+        assert_eq!(page("# srgb\n", &Few), Page { title: "srgb".to_owned(), ..Page::default() });
     }
 
     #[test]
@@ -278,8 +394,8 @@ fn f() {}
     #[test]
     fn mathematics_that_cannot_be_converted_is_shown_as_it_is_written() {
         assert!(math(r"\frac{1}{", DisplayMode::Block).is_err());
-        let page = page("# srgb\n\n$$ \\nosuch{<b>} $$\n", "srgb");
-        assert!(page.equation.contains("<code>\\nosuch{&lt;b&gt;}</code>"), "{}", page.equation);
+        let page = page("# srgb\n\n$$ \\nosuch{<b>} $$\n", &Few);
+        assert!(page.equation.0.contains("<code>\\nosuch{&lt;b&gt;}</code>"), "{}", page.equation.0);
     }
 
     #[test]

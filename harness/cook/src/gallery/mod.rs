@@ -1,56 +1,58 @@
-//! The gallery: a static site with every picture, and with every technique's equation, functions
-//! with their promises, and complete WGSL to copy. It is a single page with its pictures in a
-//! folder, readable from disk without a network.
+//! The gallery: a static site with a page for every technique, module, recipe and guide, with every picture, and with
+//! complete WGSL to copy. It can be read from disk, without a network.
 
+mod choices;
+mod guides;
 mod highlight;
 pub mod ladder;
 pub mod live;
 mod markdown;
-mod page;
+mod mirror;
+mod pages;
+pub mod pictures;
+mod places;
 pub mod rows;
-mod section;
+mod search;
+mod techniques;
 pub mod templates;
 mod text;
 
+use crate::cookbook::{self, marks};
+use crate::diagram;
 use crate::folder::{self, FolderError, Owner};
-use std::{
-    collections::HashSet,
-    fs, io,
-    path::{Path, PathBuf},
-};
+use choices::Choice;
+use lapidary_gpu::Gpu;
+use lapidary_wgsl::Recipe;
+use pages::Page;
+use pictures::{Shown, Source};
+use places::Places;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use templates::Markup;
 
-/// One rendered picture of the gallery.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
-    /// Title of the picture; the picture of the brilliant, recognised by its title, opens the page.
-    pub title: String,
-    /// The PNG or SVG to copy into the gallery.
-    pub file: PathBuf,
-    /// Description in a paragraph of plain text with `` `code` ``.
-    pub paragraph: String,
-    /// The command that renders the picture again.
-    pub command: String,
-    /// Width and height in pixels.
-    pub size: (u32, u32),
-}
-
-/// The contents of the gallery besides the cookbook itself.
+/// What the gallery is made of besides the cookbook itself.
 #[derive(Clone, Debug)]
 pub struct Site<'a> {
+    /// The repository.
+    pub root: &'a Path,
     /// The device that rendered the pictures, and its driver.
     pub adapter: String,
-    /// The pictures of the scenes.
-    pub pictures: &'a [Picture],
-    /// Figures of single modules and recipes, each with the module's or recipe's name; may be
-    /// empty.
-    pub figures: &'a [(String, Picture)],
+    /// The pictures, each with its file.
+    pub pictures: Vec<Source>,
+    /// The folder that rustdoc wrote, to be taken along.
+    pub rustdoc: Option<PathBuf>,
+    /// What is made only by a device.
+    pub device: Option<&'a Gpu>,
 }
 
 /// Why the gallery was not written. Anything that existed at its path is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum GalleryError {
-    /// A picture's file is missing.
-    #[error("picture `{title}`: {} cannot be copied: {source}; render it again with `{command}`", file.display())]
+    /// A picture's file is missing or damaged.
+    #[error("picture `{title}`: {} cannot be shown: {source}; render it again with `{command}`", file.display())]
     Picture {
         /// The picture's title.
         title: String,
@@ -61,14 +63,20 @@ pub enum GalleryError {
         /// The underlying file system error.
         source: io::Error,
     },
-    /// A figure's module or recipe does not exist.
-    #[error("figure `{title}` belongs to module `{module}`, which the cookbook does not have")]
-    UnknownModule {
-        /// Title of the figure.
-        title: String,
-        /// Name of the unknown module.
-        module: String,
+    /// A file of the repository cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The underlying file system error.
+        source: io::Error,
     },
+    /// The ladders were not drawn.
+    #[error(transparent)]
+    Ladder(#[from] ladder::LadderError),
+    /// The property rows were not written.
+    #[error(transparent)]
+    Rows(#[from] rows::RowsError),
     /// The folder was not written.
     #[error(transparent)]
     Folder(#[from] FolderError),
@@ -77,69 +85,194 @@ pub enum GalleryError {
 /// Whose folder a gallery is.
 const OWNER: Owner = Owner { command: "cook gallery", marker: ".lapidary-gallery" };
 
-/// A picture and its file in the gallery, `images/NAME.png`.
-#[derive(Clone, Debug)]
-struct Placed<'a> {
-    picture: &'a Picture,
-    module: Option<&'a str>,
-    place: String,
+/// Files of the site that are the same for every page.
+const ASSETS: &[(&str, &[u8])] = &[
+    ("style.css", include_bytes!("assets/style.css")),
+    ("site.js", include_bytes!("assets/site.js")),
+    ("theme.js", include_bytes!("assets/theme.js")),
+    ("environment.js", include_bytes!("assets/environment.js")),
+    ("diagram.css", include_bytes!("assets/diagram.css")),
+];
+
+/// A diagram, drawn.
+#[derive(Clone, Debug, Serialize)]
+struct DrawnDiagram {
+    name: &'static str,
+    module: &'static str,
+    title: &'static str,
+    caption: Vec<text::Span>,
+    svg: Markup,
 }
 
-/// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is
-/// either complete or unchanged, and the same site gives the same bytes.
+/// A live page's contents.
+#[derive(Clone, Debug, Serialize)]
+struct LivePage {
+    scene: &'static str,
+    title: &'static str,
+    body: Markup,
+}
+
+/// What pages are made of.
+#[derive(Debug)]
+struct Parts<'a> {
+    adapter: &'a str,
+    pictures: Vec<Shown>,
+    places: Places,
+    docs: BTreeMap<String, String>,
+    mirrors: BTreeMap<&'static str, Vec<String>>,
+    choices: Vec<Choice>,
+    diagrams: Vec<DrawnDiagram>,
+    ladders: BTreeMap<String, Markup>,
+    editors: BTreeMap<&'static str, Markup>,
+    live: Vec<LivePage>,
+    rustdoc: bool,
+}
+
+impl Parts<'_> {
+    /// Returns the text of a doc page.
+    fn doc(&self, file: &str) -> String {
+        self.docs.get(file).cloned().unwrap_or_default()
+    }
+}
+
+/// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is either complete or
+/// unchanged, and the same site gives the same bytes.
 ///
 /// # Errors
-/// Returns an error if a picture is missing, a figure's module is unknown, the file system fails,
-/// or `out` contains anything that an earlier call did not write.
+/// Returns an error if a picture or a doc page is missing, the file system fails, or `out` contains anything that an
+/// earlier call did not write.
 pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
-    if let Some((module, figure)) = site.figures.iter().find(|(name, _)| !is_known(name)) {
-        return Err(GalleryError::UnknownModule { title: figure.title.clone(), module: module.clone() });
-    }
-    let pictures = site.pictures.iter().map(|picture| (None, picture));
-    let figures = site.figures.iter().map(|(module, figure)| (Some(module.as_str()), figure));
-    let placed = place(pictures.chain(figures));
-    let folder = folder::replace(out, OWNER, |folder| -> Result<(), GalleryError> {
-        let images = folder.join("images");
-        fs::create_dir(&images).map_err(|source| FolderError::Write { path: images, source })?;
-        for Placed { picture, place, .. } in &placed {
-            fs::copy(&picture.file, folder.join(place)).map_err(|source| GalleryError::Picture {
-                title: picture.title.clone(),
-                file: picture.file.clone(),
-                command: picture.command.clone(),
-                source,
-            })?;
-        }
-        let index = folder.join("index.html");
-        let text = page::page(&site.adapter, &placed);
-        Ok(fs::write(&index, text).map_err(|source| FolderError::Write { path: index, source })?)
-    })?;
+    let folder = folder::replace(out, OWNER, |folder| write_into(folder, site))?;
     Ok(folder.join("index.html"))
 }
 
-/// Whether the cookbook has a module or a recipe with that name.
-fn is_known(name: &str) -> bool {
-    crate::cookbook::module(name).is_some() || lapidary_wgsl::recipe(name).is_some()
+fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
+    let shown = pictures::place(&site.pictures, &site.adapter, folder)?;
+    let mut ladders = BTreeMap::new();
+    if let Some(gpu) = site.device {
+        for of in ladder::pictures(gpu, folder)? {
+            ladders.insert(of.kind.name.to_owned(), ladder::section(of.kind, &of.pictures, "../")?);
+        }
+    }
+    let parts = Parts {
+        adapter: &site.adapter,
+        places: Places::new(&shown),
+        pictures: shown,
+        docs: docs(site.root)?,
+        mirrors: mirrors(site.root)?,
+        choices: choices::all(),
+        diagrams: diagrams(),
+        ladders,
+        editors: BTreeMap::new(),
+        live: Vec::new(),
+        rustdoc: site.rustdoc.is_some(),
+    };
+    let pages = pages::all(&parts);
+    for at in 0..pages.len() {
+        put(folder, &pages[at].path, pages::html(&parts, &pages, at).as_bytes())?;
+    }
+    for (name, bytes) in ASSETS {
+        put(folder, &["assets/", name].concat(), bytes)?;
+    }
+    put(folder, "assets/mark.svg", templates::render("mark.svg", minijinja_mark()).0.as_bytes())?;
+    write_data(folder, &pages)?;
+    if let Some(rustdoc) = &site.rustdoc {
+        copy_folder(rustdoc, &folder.join("rustdoc"))?;
+    }
+    Ok(())
 }
 
-/// Gives each picture a unique file name, derived from its title.
-fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> Vec<Placed<'a>> {
-    let mut taken = HashSet::new();
-    pictures
-        .map(|(module, picture)| {
-            let title: String = picture.title.chars().filter(|c| c.is_ascii()).collect();
-            let stem = text::slug(&format!("{} {title}", module.unwrap_or_default()));
-            let stem = if stem.is_empty() { "picture".to_owned() } else { stem };
-            let mut name = stem.clone();
-            let mut count = 1;
-            while !taken.insert(name.clone()) {
-                count += 1;
-                name = format!("{stem}-{count}");
-            }
-            let extension =
-                if picture.file.extension().is_some_and(|extension| extension == "svg") { "svg" } else { "png" };
-            Placed { picture, module, place: format!("images/{name}.{extension}") }
-        })
-        .collect()
+/// Writes what pages load on demand: the sources and the index of the search.
+fn write_data(folder: &Path, pages: &[Page]) -> Result<(), GalleryError> {
+    let entries: Vec<_> = pages.iter().flat_map(|page| &page.entries).collect();
+    put_data(folder, "search", &entries)?;
+    for module in cookbook::modules() {
+        put_data(folder, &["source/", module.name].concat(), &module.source)?;
+    }
+    for recipe in lapidary_wgsl::RECIPES {
+        put_data(folder, &["source/recipe_", recipe.name].concat(), &source_of_recipe(recipe))?;
+    }
+    Ok(())
+}
+
+/// Returns the text of a recipe to paste, as `cook copy` writes it.
+fn source_of_recipe(recipe: &Recipe) -> String {
+    marks::without(recipe, &[]).unwrap_or_else(|_| recipe.compose())
+}
+
+#[derive(Serialize)]
+struct Mark {
+    mark: &'static str,
+}
+
+fn minijinja_mark() -> Mark {
+    Mark { mark: pages::MARK }
+}
+
+/// Writes a file of the site.
+fn put(folder: &Path, path: &str, bytes: &[u8]) -> Result<(), GalleryError> {
+    let file = folder.join(path);
+    let parent = file.parent().unwrap_or(folder);
+    let fault = |source| FolderError::Write { path: file.clone(), source };
+    fs::create_dir_all(parent).map_err(fault)?;
+    Ok(fs::write(&file, bytes).map_err(fault)?)
+}
+
+/// Writes a value that pages load by its name: a script that hands it over, which a browser also loads from a file.
+fn put_data(folder: &Path, name: &str, value: &impl Serialize) -> Result<(), GalleryError> {
+    let json = |value: serde_json::Result<String>| value.unwrap_or_default();
+    let script =
+        ["gallery.deliver(", &json(serde_json::to_string(name)), ", ", &json(serde_json::to_string(value)), ");\n"];
+    put(folder, &["data/", name, ".js"].concat(), script.concat().as_bytes())
+}
+
+fn read(path: PathBuf) -> Result<String, GalleryError> {
+    fs::read_to_string(&path).map_err(|source| GalleryError::Read { path, source })
+}
+
+/// Reads the doc pages that no module holds.
+fn docs(root: &Path) -> Result<BTreeMap<String, String>, GalleryError> {
+    let guides = guides::GUIDES.iter().chain(&guides::ENGINES).map(|guide| guide.file.to_owned());
+    let techniques = techniques::TECHNIQUES.iter().map(|of| ["docs/", of.doc, ".md"].concat());
+    let recipes = lapidary_wgsl::RECIPES.iter().map(|of| ["docs/recipes/", of.name, ".md"].concat());
+    // A recipe may have no page: those for hosts alone have.
+    let recipes = recipes.filter(|file| root.join(file).is_file());
+    guides.chain(techniques).chain(recipes).map(|file| Ok((file.clone(), read(root.join(&file))?))).collect()
+}
+
+fn mirrors(root: &Path) -> Result<BTreeMap<&'static str, Vec<String>>, GalleryError> {
+    let sources = |name: &'static str| {
+        let fault = |source| GalleryError::Read { path: root.join("crates").join(name), source };
+        Ok((name, mirror::sources(root, name).map_err(fault)?))
+    };
+    cookbook::modules().iter().map(|module| sources(module.name)).collect()
+}
+
+fn diagrams() -> Vec<DrawnDiagram> {
+    let drawn = |of: &diagram::Diagram| DrawnDiagram {
+        name: of.name,
+        module: of.module,
+        title: of.title,
+        caption: text::prose(of.caption),
+        svg: of.inline(),
+    };
+    diagram::all().iter().map(drawn).collect()
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Result<(), GalleryError> {
+    let read = |source| GalleryError::Read { path: from.to_owned(), source };
+    let write = |source| FolderError::Write { path: to.to_owned(), source };
+    fs::create_dir_all(to).map_err(write)?;
+    for entry in fs::read_dir(from).map_err(read)? {
+        let path = entry.map_err(read)?.path();
+        let Some(name) = path.file_name() else { continue };
+        if path.is_dir() {
+            copy_folder(&path, &to.join(name))?;
+        } else {
+            fs::copy(&path, to.join(name)).map_err(write)?;
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -8,6 +8,23 @@ use std::sync::LazyLock;
 /// Every template: a line each.
 const TEXTS: &[(&str, &str)] = &[
     ("base.html", include_str!("templates/base.html")),
+    ("compare.html", include_str!("templates/compare.html")),
+    ("diagram.xml", include_str!("templates/diagram.xml")),
+    ("editor.html", include_str!("templates/editor.html")),
+    ("figure.html", include_str!("templates/figure.html")),
+    ("figure_alone.html", include_str!("templates/figure_alone.html")),
+    ("ladder.html", include_str!("templates/ladder.html")),
+    ("markdown.html", include_str!("templates/markdown.html")),
+    ("parts.html", include_str!("templates/parts.html")),
+    ("guide.html", include_str!("templates/guide.html")),
+    ("live_page.html", include_str!("templates/live_page.html")),
+    ("mark.svg", include_str!("templates/mark.svg")),
+    ("module.html", include_str!("templates/module.html")),
+    ("prose.html", include_str!("templates/prose.html")),
+    ("pictures.html", include_str!("templates/pictures.html")),
+    ("recipe.html", include_str!("templates/recipe.html")),
+    ("start.html", include_str!("templates/start.html")),
+    ("technique.html", include_str!("templates/technique.html")),
 ];
 
 static TEMPLATES: LazyLock<Environment<'static>> = LazyLock::new(|| {
@@ -41,4 +58,9 @@ impl Serialize for Markup {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Value::from_safe_string(self.0.clone()).serialize(serializer)
     }
+}
+
+/// Returns text as a template would write it, for HTML that a library writes.
+pub fn escaped(text: &str) -> String {
+    minijinja::HtmlEscape(text).to_string()
 }

@@ -1,35 +1,38 @@
-//! Plain text as HTML.
+//! Plain text for the templates.
 
-/// Escapes plain text for HTML elements and attributes alike.
-pub fn escape(text: &str) -> String {
-    let mut html = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => html.push_str("&amp;"),
-            '<' => html.push_str("&lt;"),
-            '>' => html.push_str("&gt;"),
-            '"' => html.push_str("&quot;"),
-            '\'' => html.push_str("&#39;"),
-            other => html.push(other),
-        }
-    }
-    html
+use serde::Serialize;
+
+/// A piece of a sentence: plain, or code.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Span {
+    /// Whether it is code.
+    pub code: bool,
+    /// The text.
+    pub text: String,
 }
 
-/// Converts plain text in which only `` `code` `` is markup, as in WGSL comments: their `*`, `_`
-/// and `$` are mathematics.
-pub fn prose(text: &str) -> String {
+/// Cuts plain text in which only `` `code` `` is markup, as in WGSL comments: their `*`, `_` and `$` are
+/// mathematics.
+pub fn prose(text: &str) -> Vec<Span> {
     let parts: Vec<&str> = text.split('`').collect();
-    let mut html = String::new();
+    let mut spans: Vec<Span> = Vec::new();
     for (index, part) in parts.iter().enumerate() {
         let closed = index + 1 < parts.len();
-        match (index % 2 == 1, closed) {
-            (true, true) => html.push_str(&format!("<code>{}</code>", escape(part))),
-            (true, false) => html.push_str(&escape(&format!("`{part}"))),
-            (false, _) => html.push_str(&escape(part)),
+        let span = match (index % 2 == 1, closed) {
+            (true, true) => Span { code: true, text: (*part).to_owned() },
+            (true, false) => Span { code: false, text: ["`", part].concat() },
+            (false, _) => Span { code: false, text: (*part).to_owned() },
+        };
+        if !span.text.is_empty() {
+            spans.push(span);
         }
     }
-    html
+    spans
+}
+
+/// Returns the text without its marks of code, for an attribute.
+pub fn plain(text: &str) -> String {
+    text.replace('`', "")
 }
 
 /// Converts text to a part of an anchor's name: lower-case letters, digits and single hyphens.
@@ -39,9 +42,9 @@ pub fn slug(text: &str) -> String {
     words.join("-")
 }
 
-/// Wraps HTML in its opening and closing tags; returns an empty string if there is nothing to wrap.
-pub fn framed(opening: &str, html: &str, closing: &str) -> String {
-    if html.is_empty() { String::new() } else { format!("{opening}{html}{closing}") }
+/// Returns the first sentence of a text.
+pub fn first_sentence(text: &str) -> &str {
+    text.find(". ").map_or(text, |end| &text[..=end])
 }
 
 #[cfg(test)]
@@ -49,13 +52,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_text_becomes_markup() {
-        assert_eq!(escape("<a href=\"x\">'&amp;'</a>"), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;amp;&#39;&lt;/a&gt;");
-    }
-
-    #[test]
     fn only_closed_code_is_markup_in_prose() {
-        assert_eq!(prose("a * b_c * d, `x<y>` and `open"), "a * b_c * d, <code>x&lt;y&gt;</code> and `open");
+        let span = |code: bool, text: &str| Span { code, text: text.to_owned() };
+        assert_eq!(
+            prose("a * b_c * d, `x<y>` and `open"),
+            [span(false, "a * b_c * d, "), span(true, "x<y>"), span(false, " and "), span(false, "`open")]
+        );
     }
 
     #[test]

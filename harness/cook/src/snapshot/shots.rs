@@ -50,7 +50,7 @@ pub struct Shot {
 pub(super) const LIGHTS_ALONE: f32 = 1.5;
 
 /// The rung that draws each body by its material and shape, like a command without `--rung`.
-const BY_MATERIAL: &str = "by-material";
+pub(super) const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
 pub const SHOTS: [Shot; 55] = [

@@ -1,0 +1,278 @@
+//! A ladder's plot: where its points, lines and labels stand. `templates/ladder.html` draws them.
+
+use super::axis::Axis;
+use serde::Serialize;
+
+/// A rung as a point.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Point {
+    pub rung: String,
+    pub ms: f64,
+    pub error: f64,
+    /// Number of its series, from 1.
+    pub series: usize,
+    /// Whether no faster rung is better.
+    pub front: bool,
+    /// The qualities that choose it.
+    pub qualities: Vec<&'static str>,
+    /// Its picture, relative to the page; `None` if there is none.
+    pub href: Option<String>,
+    /// What a reader is told of it.
+    pub title: String,
+}
+
+/// Width, height and margins of a drawing, in its own units, of which a letter is 14 high.
+#[derive(Clone, Copy, Debug)]
+struct Format {
+    name: &'static str,
+    size: [f64; 2],
+    /// Left, top, right and bottom of the plot's area.
+    area: [f64; 4],
+    /// Whether rungs that are no defaults are labelled.
+    labels: bool,
+}
+
+/// For wide columns and for phones.
+const FORMATS: [Format; 2] = [
+    Format { name: "wide", size: [960.0, 540.0], area: [58.0, 34.0, 946.0, 484.0], labels: true },
+    Format { name: "narrow", size: [380.0, 460.0], area: [42.0, 34.0, 372.0, 402.0], labels: false },
+];
+
+/// A drawing of a plot.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Drawing {
+    name: &'static str,
+    width: f64,
+    height: f64,
+    left: f64,
+    top: f64,
+    right: f64,
+    bottom: f64,
+    /// Milliseconds at the left and right end.
+    x0: f64,
+    x1: f64,
+    /// Errors at the bottom and at the top.
+    y0: f64,
+    y1: f64,
+    columns: Vec<Tick>,
+    lines: Vec<Tick>,
+    /// The staircase: its path, and the points of the front as `ms,error` with spaces between.
+    front: String,
+    front_of: String,
+    points: Vec<Placed>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Tick {
+    value: f64,
+    at: f64,
+    text: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Placed {
+    #[serde(flatten)]
+    point: Point,
+    x: f64,
+    y: f64,
+    mark: &'static str,
+    label: Option<Label>,
+}
+
+/// A label beside its point.
+#[derive(Clone, Debug, Serialize)]
+struct Label {
+    text: String,
+    dx: f64,
+    dy: f64,
+    anchor: &'static str,
+    /// Whether a line leads from the point to it.
+    led: bool,
+}
+
+/// The marks by series, about the origin: disc, square, triangle, diamond, cross and triangle on its tip.
+pub(super) const MARKS: [&str; 6] = [
+    "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0 -5 0Z",
+    "M-4.5 -4.5H4.5V4.5H-4.5Z",
+    "M0 -6L5.5 4.2H-5.5Z",
+    "M0 -6.4L5.4 0L0 6.4L-5.4 0Z",
+    "M-5.4 -3L-3 -5.4L0 -2.4L3 -5.4L5.4 -3L2.4 0L5.4 3L3 5.4L0 2.4L-3 5.4L-5.4 3L-2.4 0Z",
+    "M0 6L5.5 -4.2H-5.5Z",
+];
+
+/// Returns a plot's drawings, for wide columns and for phones.
+pub(super) fn drawings(points: &[Point]) -> Vec<Drawing> {
+    FORMATS.iter().map(|format| drawing(points, format)).collect()
+}
+
+fn drawing(points: &[Point], format: &Format) -> Drawing {
+    let [left, top, right, bottom] = format.area;
+    let across = Axis::of(points.iter().map(|point| point.ms), [left, right]);
+    let up = Axis::of(points.iter().map(|point| point.error), [bottom, top]);
+    let at = |point: &Point| [across.at(point.ms), up.at(point.error)].map(rounded);
+    let front: Vec<&Point> = points.iter().filter(|point| point.front).collect();
+    let places: Vec<[f64; 2]> = points.iter().map(at).collect();
+    let labels = labels(points, &places, format);
+    let tick = |axis: &Axis, value: &f64| Tick { value: *value, at: rounded(axis.at(*value)), text: short(*value) };
+    Drawing {
+        name: format.name,
+        width: format.size[0],
+        height: format.size[1],
+        left,
+        top,
+        right,
+        bottom,
+        x0: across.ends[0],
+        x1: across.ends[1],
+        y0: up.ends[0],
+        y1: up.ends[1],
+        columns: across.ticks.iter().map(|value| tick(&across, value)).collect(),
+        lines: up.ticks.iter().map(|value| tick(&up, value)).collect(),
+        front: stairs(&front.iter().map(|point| at(point)).collect::<Vec<_>>(), top, right),
+        front_of: front.iter().map(|point| format!("{},{}", point.ms, point.error)).collect::<Vec<_>>().join(" "),
+        points: points
+            .iter()
+            .zip(places)
+            .zip(labels)
+            .map(|((point, [x, y]), label)| Placed {
+                point: point.clone(),
+                x,
+                y,
+                mark: MARKS[(point.series - 1) % MARKS.len()],
+                label,
+            })
+            .collect(),
+    }
+}
+
+/// Returns the path along the least error that each time buys. Points come by increasing time.
+fn stairs(front: &[[f64; 2]], top: f64, right: f64) -> String {
+    let Some([x, y]) = front.first() else { return String::new() };
+    let steps: String = front.iter().map(|[x, y]| format!("H{x}V{y}")).collect();
+    let _ = y;
+    format!("M{x} {top}{steps}H{right}")
+}
+
+/// Shows a value of an axis.
+fn short(value: f64) -> String {
+    if (1e-3..1e6).contains(&value) { value.to_string() } else { format!("{value:e}") }
+}
+
+/// Rounds to a tenth of a unit, so that pages stay small.
+fn rounded(value: f64) -> f64 {
+    (10.0 * value).round() / 10.0
+}
+
+/// A rectangle: left, top, right, bottom.
+type Area = [f64; 4];
+
+fn overlap(a: &Area, b: &Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+/// Height of a label, and the mean width of its letters.
+const LETTER: [f64; 2] = [8.0, 15.0];
+/// How far from its point a label begins, in the order in which places are tried.
+const REACHES: [f64; 4] = [10.0, 22.0, 36.0, 52.0];
+
+/// Places labels so that they overlap neither each other nor points. Defaults come first; a rung of the front that has
+/// no room gets none.
+fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
+    let mut order: Vec<usize> = (0..points.len()).filter(|at| points[*at].front || !points[*at].qualities.is_empty()).collect();
+    order.sort_by_key(|at| points[*at].qualities.is_empty());
+    let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
+    let mut taken: Vec<Area> = Vec::new();
+    let mut labels = vec![None; points.len()];
+    for at in order {
+        let point = &points[at];
+        if point.qualities.is_empty() && !format.labels {
+            continue;
+        }
+        let text = match point.qualities.as_slice() {
+            [] => point.rung.clone(),
+            qualities => format!("{}: {}", qualities.join(", "), point.rung),
+        };
+        let width = LETTER[0] * text.chars().count() as f64;
+        let candidates = candidates(width, places[at]);
+        let fits = |area: &Area| {
+            let [left, top, right, bottom] = format.area;
+            area[0] >= left && area[1] >= top - 14.0 && area[2] <= right && area[3] <= bottom
+        };
+        let costs = |area: &Area| {
+            let on_marks = marks.iter().filter(|mark| overlap(area, mark)).count();
+            let on_labels = taken.iter().filter(|other| overlap(area, other)).count();
+            on_marks + 100 * on_labels + if fits(area) { 0 } else { 1000 }
+        };
+        let Some((best, area)) = candidates.into_iter().min_by_key(|(_, area)| costs(area)) else { continue };
+        // A default is always named.
+        if point.qualities.is_empty() && costs(&area) > 0 {
+            continue;
+        }
+        taken.push(area);
+        labels[at] = Some(Label { text, ..best });
+    }
+    labels
+}
+
+/// Returns the places for a label of this width, the best first.
+fn candidates(width: f64, [x, y]: [f64; 2]) -> Vec<(Label, Area)> {
+    let mut all = Vec::new();
+    for reach in REACHES {
+        let side = reach.min(22.0);
+        for (dx, dy) in [(side, -reach), (side, 0.0), (-side, reach), (-side, 0.0), (side, reach), (-side, -reach)] {
+            let (dx, dy) = if reach == REACHES[0] && dy != 0.0 { (dx * 0.6, dy * 1.1) } else { (dx, dy) };
+            let [left, anchor] = if dx > 0.0 { [x + dx, 0.0] } else { [x + dx - width, 1.0] };
+            let middle = y + dy;
+            let area = [left, middle - 0.5 * LETTER[1], left + width, middle + 0.5 * LETTER[1]];
+            let anchor = if anchor == 0.0 { "start" } else { "end" };
+            all.push((Label { text: String::new(), dx: rounded(dx), dy: rounded(dy), anchor, led: reach > 12.0 }, area));
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(rung: &str, ms: f64, error: f64, front: bool, qualities: &[&'static str]) -> Point {
+        let title = format!("{rung}: {error}");
+        Point { rung: rung.to_owned(), ms, error, series: 1, front, qualities: qualities.into(), href: None, title }
+    }
+
+    #[test]
+    fn points_stand_where_the_axes_say_and_labels_stand_apart() {
+        let many: Vec<Point> = (0..12).map(|k| point("walk-8+tracker", 1.0 + 0.2 * f64::from(k), 0.5, true, &[])).collect();
+        let defaults = [point("a", 1.0, 0.9, true, &["fast"]), point("b", 1.1, 0.89, true, &["good", "best"])];
+        let points = [many, defaults.into()].concat();
+        for drawing in drawings(&points) {
+            for placed in &drawing.points {
+                let share = (placed.point.ms / drawing.x0).ln() / (drawing.x1 / drawing.x0).ln();
+                assert!((drawing.left + share * (drawing.right - drawing.left) - placed.x).abs() < 0.06);
+                assert!(placed.y > drawing.top && placed.y < drawing.bottom);
+            }
+            let labelled: Vec<&Placed> = drawing.points.iter().filter(|placed| placed.label.is_some()).collect();
+            let has = |text: &str| labelled.iter().any(|placed| placed.label.as_ref().is_some_and(|label| label.text == text));
+            assert!(has("fast: a") && has("good, best: b"), "defaults are always named");
+            let areas: Vec<Area> = labelled
+                .iter()
+                .filter_map(|placed| {
+                    let label = placed.label.as_ref()?;
+                    let width = LETTER[0] * label.text.chars().count() as f64;
+                    let left = placed.x + label.dx - if label.anchor == "end" { width } else { 0.0 };
+                    let middle = placed.y + label.dy;
+                    Some([left, middle - 7.0, left + width, middle + 7.0])
+                })
+                .collect();
+            for (at, area) in areas.iter().enumerate() {
+                assert!(areas[..at].iter().all(|other| !overlap(area, other)), "{}: {areas:?}", drawing.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_front_is_a_staircase() {
+        assert_eq!(stairs(&[[10.0, 50.0], [30.0, 80.0]], 5.0, 99.0), "M10 5H10V50H30V80H99");
+        assert_eq!(stairs(&[], 5.0, 99.0), "");
+    }
+}

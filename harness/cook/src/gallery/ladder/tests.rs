@@ -1,0 +1,169 @@
+use super::*;
+use lapidary_gpu::{AdapterChoice, Gpu};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Returns a ladder's pictures as they would be drawn, without drawing them.
+fn pretended(kind: &'static Kind) -> Vec<RungPicture> {
+    let picture = |rung: &str| RungPicture {
+        rung: rung.to_owned(),
+        file: format!("images/rungs/{}/{}.png", kind.name, rung.replace('+', "-")),
+        side: 384,
+        command: format!("./cook render {} --rung {rung}", kind.scene()),
+        ..RungPicture::default()
+    };
+    let measured = kind.steps().into_iter().map(|step| picture(&step.rung));
+    [picture(REFERENCE)].into_iter().chain(measured).chain(kind.others.iter().map(|rung| picture(rung))).collect()
+}
+
+fn html(kind: &'static Kind, pictures: &[RungPicture]) -> String {
+    section(kind, pictures, "../").expect("the committed report").0
+}
+
+/// Returns the values of an attribute.
+fn values<'h>(html: &'h str, attribute: &str) -> Vec<&'h str> {
+    let start = format!(" {attribute}=\"");
+    html.split(&start).skip(1).filter_map(|rest| rest.split_once('"')).map(|(value, _)| value).collect()
+}
+
+#[test]
+fn every_rung_of_the_report_is_in_the_table_and_in_both_drawings() {
+    for kind in &KINDS {
+        let html = html(kind, &[]);
+        let (drawings, table) = html.split_once("<tbody>").expect("a table");
+        assert!(kind.steps().len() >= 6, "{}: {}", kind.name, kind.steps().len());
+        for step in kind.steps() {
+            let row = format!("<th scope=\"row\">{}</th><td class=\"number\">{}</td>", step.rung, figure(step.error));
+            assert_eq!(table.matches(&row).count(), 1, "{}: {row}", kind.name);
+            let point = format!("data-ms=\"{}\" data-error=\"{}\"", step.ms, step.error);
+            assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
+        }
+        for quality in Quality::ALL {
+            let rung = kind.technique.rung(quality).to_string();
+            assert!(qualities(kind, &rung).contains(&quality.name()));
+            let names = qualities(kind, &rung).join(", ");
+            assert_eq!(drawings.matches(&format!(">{names}: {rung}</text>")).count(), 2, "{}: {names}: {rung}", kind.name);
+        }
+        assert!(!html.contains("<a "), "without pictures nothing leads to one");
+    }
+}
+
+#[test]
+fn every_point_and_every_row_leads_to_a_picture_that_is_there() {
+    for kind in &KINDS {
+        let pictures = pretended(kind);
+        let files: HashSet<String> = pictures.iter().map(|picture| format!("../{}", picture.file)).collect();
+        let html = html(kind, &pictures);
+        let links = values(&html, "href");
+        let steps = kind.steps().len();
+        assert_eq!(links.len(), 3 * steps + 2, "a link a point in two drawings, one a row, and the two that are shown");
+        for link in links.into_iter().chain(values(&html, "src")).chain(values(&html, "data-src")) {
+            assert!(files.contains(link), "{}: {link}", kind.name);
+        }
+        assert_eq!(html.matches("<template").count(), pictures.len());
+        let missing: Vec<RungPicture> = pictures.iter().filter(|picture| picture.rung == REFERENCE).cloned().collect();
+        assert!(section(kind, &missing, "").expect("drawn").0.contains("images/rungs"), "one picture is enough to compare");
+    }
+}
+
+#[test]
+fn what_is_drawn_for_another_rung_has_the_same_error() {
+    let mut twins = 0;
+    for kind in &KINDS {
+        let steps = kind.steps();
+        for step in &steps {
+            let pictured = kind.pictured(&step.rung, &steps);
+            let of = steps.iter().find(|other| other.rung == pictured).expect("a measured rung");
+            // The same hits or costs give the same picture up to rounding.
+            assert!((step.error / of.error - 1.0).abs() < 1e-3, "{} by {pictured}: {} {}", step.rung, step.error, of.error);
+            twins += usize::from(pictured != step.rung);
+        }
+    }
+    assert!(twins > 10, "{twins}");
+}
+
+#[test]
+fn what_is_filled_in_is_escaped() {
+    let kind = &KINDS[0];
+    let mut pictures = pretended(kind);
+    pictures[0].note = "<b>&\"".to_owned();
+    pictures[0].command = "./cook render '<x>'".to_owned();
+    let html = html(kind, &pictures);
+    assert!(!html.contains("<b>") && !html.contains("<x>"), "text is never markup");
+    assert!(html.contains("&lt;b&gt;&amp;"));
+    // Balanced: what opens is closed.
+    for tag in ["svg", "figure", "template", "section", "details", "table", "g", "a", "select"] {
+        let opened = html.matches(&format!("<{tag}>")).count() + html.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, html.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+}
+
+#[test]
+fn a_figure_has_its_caption_command_and_file() {
+    let text = figure_of("t < u", "./cook render ruby");
+    for part in ["href=\"../images/full.png\"", "alt=\"t &lt; u\"", "<em>caption</em>", "<code>walk-8</code>", "./cook render ruby"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+fn figure_of(title: &str, command: &str) -> String {
+    #[derive(Serialize)]
+    struct Values<'a> {
+        p: Shown<'a>,
+        root: &'a str,
+    }
+    #[derive(Serialize)]
+    struct Shown<'a> {
+        thumb: &'a str,
+        file: &'a str,
+        width: u32,
+        height: u32,
+        title: &'a str,
+        caption: Markup,
+        command: &'a str,
+        adapter: &'a str,
+        rung: &'a str,
+        samples: &'a str,
+    }
+    let p = Shown {
+        thumb: "images/thumb.png",
+        file: "images/full.png",
+        width: 4,
+        height: 4,
+        title,
+        caption: Markup("<em>caption</em>".to_owned()),
+        command,
+        adapter: "llvmpipe",
+        rung: "walk-8",
+        samples: "2 × 2 samples a pixel",
+    };
+    templates::render("figure_alone.html", Values { p, root: "../" }).0
+}
+
+#[test]
+#[ignore = "draws all ladders' pictures and writes a page to look at: target/ladders/index.html"]
+fn a_page_to_look_at() {
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+    let root = crate::repository::place();
+    let out = root.join("target/ladders");
+    let started = std::time::Instant::now();
+    let assets = out.join("assets");
+    std::fs::create_dir_all(&assets).expect("a folder");
+    for file in std::fs::read_dir(root.join("harness/cook/src/gallery/assets")).expect("assets").flatten() {
+        std::fs::copy(file.path(), assets.join(file.file_name())).expect("copied");
+    }
+    let drawn: Vec<LadderPictures> = match std::env::var_os("LADDERS_DRAWN") {
+        // The same list without drawing again.
+        Some(_) => KINDS.iter().map(|kind| pictures::listed(&gpu.describe(), kind)).collect(),
+        None => pictures(gpu, &out).expect("drawn"),
+    };
+    println!("{:.1} s", started.elapsed().as_secs_f64());
+    for LadderPictures { pictures, .. } in &drawn {
+        for picture in pictures {
+            assert!(Path::new(&out.join(&picture.file)).exists(), "{}", picture.file);
+        }
+    }
+    let sections: Vec<String> = drawn.iter().map(|of| section(of.kind, &of.pictures, "").expect("shown").0).collect();
+    let page = include_str!("look.html").replace("SECTIONS", &sections.join("\n")).replace("FIGURES", "");
+    std::fs::write(out.join("index.html"), page).expect("written");
+}

@@ -1,0 +1,166 @@
+//! The scenes of the live pages: their rungs, what can be switched and what can be moved.
+
+use super::slider::{
+    ABSORPTION, DISPERSION_STRENGTH, EXPOSURE, FREE_PATH, INDEX, LIGHT_POWER, LIGHT_TURN, ROUGHNESS, Slider,
+};
+use lapidary_plan::quality::Technique;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render::Settings;
+
+/// Width and height of a live picture in pixels: the largest that is drawn without tiles.
+pub const SIDE: u32 = 512;
+/// Samples along each side of a pixel.
+pub const SAMPLES: u32 = 2;
+
+/// A scene that a page draws live.
+#[derive(Debug)]
+pub struct LiveScene {
+    /// Name of the built-in scene; its page is `live/NAME.html`.
+    pub scene: &'static str,
+    /// Title of the page.
+    pub title: &'static str,
+    /// What one can try there, in plain words.
+    pub summary: &'static str,
+    /// The rungs to choose from; the first is drawn at first.
+    pub rungs: &'static [&'static str],
+    /// The rung to compare with at first.
+    pub other: &'static str,
+    /// Name of the plot that a measured time is drawn into.
+    pub ladder: &'static str,
+    /// The ladder that holds the rungs' errors and times.
+    pub technique: Technique,
+    /// Effects to switch.
+    pub toggles: &'static [Toggle],
+    /// What can be moved.
+    pub sliders: &'static [&'static Slider],
+    /// Whether a picture can be given as the environment.
+    pub environment: bool,
+}
+
+/// An effect that can be switched.
+#[derive(Debug)]
+pub struct Toggle {
+    /// The effect.
+    pub effect: Effect,
+    /// What it does, in a few words.
+    pub label: &'static str,
+    /// Whether it is on at first.
+    pub on: bool,
+}
+
+impl Toggle {
+    /// Switches the effect.
+    pub fn set(&self, settings: &mut Settings, on: bool) {
+        match self.effect {
+            Effect::Footprint => settings.gem.footprint = on,
+            Effect::Shadow => settings.shadows = on,
+            Effect::HalfSpace => settings.half_space = on,
+            effect if !on => settings.without = settings.without.and(Effects::of(&[effect])),
+            _ => {}
+        }
+    }
+
+    /// The option of `cook render` for the effect when it is on, and when it is off; empty if none is needed.
+    #[must_use]
+    pub fn options(&self) -> [String; 2] {
+        match self.effect {
+            Effect::Footprint => ["--footprint".to_owned(), String::new()],
+            Effect::Shadow | Effect::HalfSpace => [format!("--with {}", self.effect), String::new()],
+            effect => [String::new(), format!("--without {effect}")],
+        }
+    }
+}
+
+const fn toggle(effect: Effect, label: &'static str, on: bool) -> Toggle {
+    Toggle { effect, label, on }
+}
+
+const STONE_RUNGS: &[&str] = &[
+    "walk-8+tracker",
+    "walk-16+tracker",
+    "walk-4+tracker",
+    "walk-2+tracker",
+    "convex-8+tracker",
+    "bvh-8+tracker",
+    "proxy-4+tracker",
+    "proxy-1+tracker",
+    "surface",
+];
+
+const DISPERSION: Toggle = toggle(Effect::Dispersion, "dispersion: an index for each colour", true);
+const FOOTPRINT: Toggle = toggle(Effect::Footprint, "facets’ edges inside smoothed", false);
+const AROUND: Toggle = toggle(Effect::Environment, "light from all around", true);
+const HIGHLIGHTS: Toggle = toggle(Effect::Microfacet, "highlights of the rough surface", true);
+
+/// Every live scene.
+pub const SCENES: [LiveScene; 5] = [
+    LiveScene {
+        scene: "brilliant",
+        title: "A diamond, live",
+        summary: "Turn the stone, move its index of refraction from water’s to beyond diamond’s, and see what each rung of the ladder \
+            leaves out: drag the wipe between two of them.",
+        rungs: STONE_RUNGS,
+        other: "proxy-4+tracker",
+        ladder: "convex",
+        technique: Technique::Convex,
+        toggles: &[DISPERSION, FOOTPRINT],
+        sliders: &[&INDEX, &DISPERSION_STRENGTH, &EXPOSURE],
+        environment: true,
+    },
+    LiveScene {
+        scene: "ruby",
+        title: "A ruby, live",
+        summary: "The same cut in corundum, whose colour is absorbed on the way inside: long ways are darker than short ones.",
+        rungs: STONE_RUNGS,
+        other: "surface",
+        ladder: "convex",
+        technique: Technique::Convex,
+        toggles: &[DISPERSION, toggle(Effect::Absorption, "absorption inside", true), FOOTPRINT],
+        sliders: &[&INDEX, &ABSORPTION, &DISPERSION_STRENGTH, &EXPOSURE],
+        environment: true,
+    },
+    LiveScene {
+        scene: "skin_ring",
+        title: "A ring of skin, live",
+        summary: "Light creeps round what is curved: make the free path longer and watch the shadow’s edge soften, red first. Lambert’s law \
+            on the other side of the wipe knows none of it.",
+        rungs: &["drift", "accurate", "cheap", "power", "quadrature", "wrap", "lambert"],
+        other: "lambert",
+        ladder: "cdrf",
+        technique: Technique::Cdrf,
+        toggles: &[
+            toggle(Effect::HalfSpace, "the law of a half space", true),
+            toggle(Effect::Shadow, "shadows", true),
+            AROUND,
+            HIGHLIGHTS,
+        ],
+        sliders: &[&FREE_PATH, &ROUGHNESS, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],
+        environment: false,
+    },
+    LiveScene {
+        scene: "bunny",
+        title: "A marble bunny by paths of light, live",
+        summary: "Light takes the cheapest way from the sun to each voxel, and is found anew whenever the sun or the stone changes; turning \
+            the bunny needs none of it.",
+        rungs: &["godunov-64", "godunov-32", "tiled-26-32", "lambert-shadowed", "lambert", "diffusion-64"],
+        other: "lambert-shadowed",
+        ladder: "translucent",
+        technique: Technique::Translucent,
+        toggles: &[AROUND, HIGHLIGHTS],
+        sliders: &[&FREE_PATH, &ROUGHNESS, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],
+        environment: false,
+    },
+    LiveScene {
+        scene: "dragon",
+        title: "A jade dragon by diffusion, live",
+        summary: "Light diffuses through veined jade on a grid, solved anew whenever the sun or the stone changes: turn the sun behind the \
+            dragon and let it shine through claws and crest.",
+        rungs: &["diffusion-64", "diffusion-32", "godunov-64", "lambert-shadowed"],
+        other: "lambert-shadowed",
+        ladder: "translucent",
+        technique: Technique::Diffusion,
+        toggles: &[AROUND],
+        sliders: &[&FREE_PATH, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],
+        environment: false,
+    },
+];

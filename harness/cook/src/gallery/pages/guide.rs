@@ -1,0 +1,42 @@
+//! A guide's page.
+
+use super::super::{
+    Parts,
+    guides::Guide,
+    markdown::{self, Heading},
+    templates::{self, Markup},
+    text,
+};
+use super::{Entry, Page};
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Values<'a> {
+    title: &'a str,
+    lead: Markup,
+    equation: Markup,
+    rest: Markup,
+    headings: Vec<&'a Heading>,
+    ladders: Vec<&'a Markup>,
+}
+
+/// Returns the page of a guide.
+pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
+    let doc = markdown::page(&parts.doc(of.file), &parts.places.of(of.file));
+    let values = Values {
+        title: &doc.title,
+        lead: doc.lead,
+        equation: doc.equation,
+        rest: doc.rest,
+        headings: doc.headings.iter().filter(|heading| heading.level == 2).collect(),
+        ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
+    };
+    let body = templates::render("guide.html", values);
+    let path = ["guides/", of.name, ".html"].concat();
+    let description = text::first_sentence(&doc.summary);
+    let mut page =
+        Page::new("guide", path, of.title, description, body).with(&["diagram.css", "ladder.css"], &["ladder.js"]);
+    page.entries = vec![Entry::page(of.title, &page.path, description)];
+    page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
+    page
+}

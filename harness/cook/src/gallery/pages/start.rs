@@ -1,0 +1,52 @@
+//! The page that one sees first.
+
+use super::super::{Parts, pictures::Shown, techniques::TECHNIQUES, templates, text};
+use super::Page;
+use crate::cookbook;
+use serde::Serialize;
+
+/// A technique, in short.
+#[derive(Serialize)]
+struct Card<'a> {
+    name: &'a str,
+    title: &'a str,
+    summary: &'a str,
+    command: String,
+    live: Option<&'a str>,
+    picture: Option<&'a Shown>,
+}
+
+/// Returns the page.
+pub fn page(parts: &Parts<'_>) -> Page {
+    let picture = |name: &str| parts.pictures.iter().find(|picture| picture.name == name);
+    let card = |of: &'static crate::gallery::techniques::Technique| Card {
+        name: of.name,
+        title: of.title,
+        summary: of.summary,
+        command: of.command(),
+        live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
+        picture: picture(of.hero),
+    };
+    #[derive(Serialize)]
+    struct Values<'a> {
+        hero: Option<&'a Shown>,
+        cards: Vec<Card<'a>>,
+        modules: usize,
+        functions: usize,
+        recipes: usize,
+        choices: &'a [super::super::choices::Choice],
+    }
+    let values = Values {
+        hero: picture("vitrine"),
+        cards: TECHNIQUES.iter().map(card).collect(),
+        modules: cookbook::modules().len(),
+        functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),
+        recipes: lapidary_wgsl::RECIPES.len(),
+        choices: &parts.choices,
+    };
+    let body = templates::render("start.html", values);
+    let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";
+    let mut page = Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
+    page.entries = vec![super::Entry::page("Start", &page.path, &text::plain(description))];
+    page
+}

@@ -1,0 +1,96 @@
+//! A technique's page.
+
+use super::super::{
+    Parts, markdown,
+    pictures::Shown,
+    techniques::Technique,
+    templates::{self, Markup},
+};
+use super::{Entry, Page};
+use crate::cookbook;
+use serde::Serialize;
+
+/// A module or a recipe in a list.
+#[derive(Serialize)]
+struct Named<'a> {
+    name: &'a str,
+    purpose: Vec<super::super::text::Span>,
+}
+
+#[derive(Serialize)]
+struct Values<'a> {
+    technique: &'a str,
+    title: &'a str,
+    summary: &'a str,
+    copying: String,
+    hero: Option<&'a Shown>,
+    live: Option<&'a str>,
+    lead: Markup,
+    equation: Markup,
+    rest: Markup,
+    /// The doc page that holds the rest, if it is a module's own.
+    module: Option<&'a str>,
+    choices: Vec<&'a super::super::choices::Choice>,
+    diagrams: Vec<&'a super::super::DrawnDiagram>,
+    ladders: Vec<&'a Markup>,
+    pictures: Vec<&'a Shown>,
+    guides: Vec<Guide>,
+    modules: Vec<Named<'a>>,
+    recipes: Vec<Named<'a>>,
+}
+
+#[derive(Serialize)]
+struct Guide {
+    path: String,
+    title: &'static str,
+}
+
+/// Returns the page of a technique.
+pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
+    let path = ["techniques/", of.name, ".html"].concat();
+    let file = ["docs/", of.doc, ".md"].concat();
+    let doc = markdown::page(&parts.doc(&file), &parts.places.of(&file));
+    let module = cookbook::module(of.doc).map(|module| module.name);
+    let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
+    let hero = parts.pictures.iter().find(|picture| picture.name == of.hero);
+    let guide = |name: &str| {
+        let guide = super::super::guides::GUIDES.iter().find(|guide| guide.name == name)?;
+        Some(Guide { path: ["../guides/", guide.name, ".html"].concat(), title: guide.title })
+    };
+    let shown = |picture: &&Shown| picture.folder == of.pictures && picture.name != of.hero;
+    let values = Values {
+        technique: of.name,
+        title: of.title,
+        summary: of.summary,
+        copying: of.command(),
+        hero,
+        live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
+        lead: doc.lead,
+        equation: doc.equation,
+        rest: if module.is_some() { Markup::default() } else { doc.rest },
+        module,
+        choices: parts.choices.iter().filter(|choice| of.ladders.contains(&choice.ladder)).collect(),
+        diagrams: parts.diagrams.iter().filter(|diagram| of.modules.contains(&diagram.module)).collect(),
+        ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
+        pictures: parts.pictures.iter().filter(shown).collect(),
+        guides: std::iter::once("choosing").chain(of.guides.iter().copied()).filter_map(guide).collect(),
+        modules: of.modules.iter().copied().map(named).collect(),
+        recipes: of.recipes.iter().copied().map(named).collect(),
+    };
+    let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
+        .with(&["diagram.css", "ladder.css"], &["ladder.js"]);
+    page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
+    if module.is_none() {
+        page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
+    }
+    page
+}
+
+/// Returns what a module or a recipe is for.
+pub fn purpose(name: &str) -> String {
+    let recipe = || {
+        let recipe = lapidary_wgsl::recipe(name)?;
+        Some(cookbook::header::parse_header(recipe.source).ok()?.purpose)
+    };
+    cookbook::module(name).map(|module| module.header.purpose.clone()).or_else(recipe).unwrap_or_default()
+}
