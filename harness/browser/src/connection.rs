@@ -178,7 +178,7 @@ fn unpacked(mut message: Vec<u8>) -> Result<Answer, BrowserError> {
 }
 
 /// Returns the last lines that Chromium wrote to stderr.
-fn last_lines(log: &Path) -> String {
+pub(crate) fn last_lines(log: &Path) -> String {
     let text = std::fs::read(log).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let lines: Vec<&str> = text.lines().collect();

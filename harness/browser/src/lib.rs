@@ -3,6 +3,7 @@
 //!
 //! Chromium runs headless on a page served by this process. The page asks for jobs over a local
 //! socket, does them and returns the answers: it contains no shader, and this crate no technique.
+//! [`Page`] shows a page of one's own instead, and reads, presses and clicks it as its reader does.
 //!
 //! ```no_run
 //! use lapidary_browser::{Adapter, Browser, Buffer, Compute};
@@ -17,8 +18,10 @@
 //! ```
 
 mod connection;
+mod driver;
 
 use connection::Connection;
+pub use driver::Page;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
