@@ -20,6 +20,7 @@ mod dispatch;
 mod effects_off;
 mod engines;
 mod environment_harmonics;
+mod environment_js;
 mod footprint;
 mod formulas;
 

@@ -130,23 +130,24 @@
     if (words.length !== count || !words.every((word) => DECIMAL.test(word))) {
       refuse(`its header's ${key} is ${quoted(value.trim())}, and must be numbers, ${count} in all`, AGAIN);
     }
-    return words.map(Number);
+    return words.map((word) => Math.fround(Number(word)));
   }
 
   /** Reads the header up to the resolution: size, and what red, green and blue are to be divided by. */
   function radianceHeader(reader) {
-    const divisors = [1, 1, 1];
+    let [exposure, corrections] = [1, [1, 1, 1]];
     reader.until(10, 'its first line');
     for (let line = ' '; line !== ''; ) {
       line = reader.until(10, 'its header').replace(/\r$/, '');
       const [, key, value] = /^([^#=][^=]*)=(.*)$/s.exec(line) ?? [null, '', ''];
       if (key.trim() === 'FORMAT') checkRadianceFormat(value.trim());
-      // All exposures multiply, and pixels are divided by the product.
-      const factors = { EXPOSURE: 1, COLORCORR: 3 }[key.trim()];
-      if (!factors) continue;
-      const numbers = decimals(key.trim(), value, factors);
-      divisors.forEach((divisor, part) => (divisors[part] = Math.fround(divisor * numbers[part % factors])));
+      // All of a header multiply, and pixels are divided by the product.
+      if (key.trim() === 'EXPOSURE') exposure = Math.fround(exposure * decimals('EXPOSURE', value, 1)[0]);
+      if (key.trim() !== 'COLORCORR') continue;
+      const factors = decimals('COLORCORR', value, 3);
+      corrections = corrections.map((correction, part) => Math.fround(correction * factors[part]));
     }
+    const divisors = corrections.map((correction) => Math.fround(exposure * correction));
     if (!divisors.every((divisor) => divisor >= 2 ** -126 && divisor < Infinity)) {
       refuse(`its exposures multiply to ${divisors.join(', ')}, but must be finite and above 0`, AGAIN);
     }
