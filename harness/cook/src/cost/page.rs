@@ -12,6 +12,9 @@ const END: &str = "<!-- end -->";
 /// Name of the README's table of modules, which belongs to no report.
 pub const MODULES: &str = "modules";
 
+/// Name of the table of rungs by quality, of `docs/choosing.md`.
+pub const CHOICES: &str = "choices";
+
 /// Name of the table of built-in functions by device.
 pub const BUILTINS: &str = "builtins";
 
@@ -21,7 +24,7 @@ pub const DIFFERENCES: &str = "differences";
 /// Returns the names of all tables.
 fn names() -> Vec<&'static str> {
     let of = |ladder: &Ladder| (ladder.tables)(&Report::default()).into_iter().map(|table| table.name);
-    LADDERS.iter().flat_map(of).chain([MODULES, BUILTINS, DIFFERENCES]).collect()
+    LADDERS.iter().flat_map(of).chain([MODULES, CHOICES, BUILTINS, DIFFERENCES]).collect()
 }
 
 /// Checks that a page's marks are well formed.

@@ -1,8 +1,18 @@
-//! The rungs that the qualities choose, as the planner has them.
+//! The rungs that the qualities choose, as the planner has them, with their figures on two devices.
 
 use super::ladder::{KINDS, Kind};
+use crate::cost::Table;
 use lapidary_plan::Quality;
+use lapidary_plan::ladder::Ladder;
 use serde::Serialize;
+
+/// The reports of a GPU, by the ladder's report.
+const GPU: [(&str, &str); 4] = [
+    ("gem", include_str!("../../../../docs/measurements/nvidia_h200/gem.json")),
+    ("cdrf", include_str!("../../../../docs/measurements/nvidia_h200/cdrf.json")),
+    ("optical_path", include_str!("../../../../docs/measurements/nvidia_h200/optical_path.json")),
+    ("translucent", include_str!("../../../../docs/measurements/nvidia_h200/translucent.json")),
+];
 
 /// The rung of a quality.
 #[derive(Clone, Debug, Serialize)]
@@ -19,8 +29,10 @@ pub struct Choice {
     pub measure: &'static str,
     /// The mean error over the ladder's views.
     pub error: String,
-    /// Milliseconds on the adapter of the record.
+    /// Mean milliseconds of the views on lavapipe.
     pub ms: String,
+    /// The same on a GPU; a dash if it was not measured there.
+    pub gpu: String,
     /// Times the time of `fast`.
     pub times: String,
 }
@@ -35,14 +47,35 @@ fn choice(kind: &'static Kind, quality: Quality) -> Option<Choice> {
     let rung = kind.technique.rung(quality).to_string();
     let step = ladder.step(&rung)?;
     let fast = ladder.step(&kind.technique.rung(Quality::Fast).to_string())?;
+    let on_gpu = || {
+        let (_, record) = GPU.iter().find(|(report, _)| *report == kind.report)?;
+        Some(Ladder::of_record(kind.technique, record).ok()?.step(&rung)?.ms)
+    };
     Some(Choice {
         ladder: kind.name,
         title: kind.title,
         quality: quality.name(),
-        rung,
         measure: ladder.measure,
         error: format!("{:.2}", step.error),
         ms: format!("{:.1}", step.ms),
+        gpu: on_gpu().map_or_else(|| "-".to_owned(), |ms| format!("{ms:.2}")),
         times: format!("{:.1}", step.ms / fast.ms),
+        rung,
     })
+}
+
+/// Returns the choices as the table of `docs/choosing.md`.
+pub fn table() -> Table {
+    Table::of("choices", "", all())
+        .column("bodies", |choice| choice.title.to_owned())
+        .column("`--quality`", |choice| choice.quality.to_owned())
+        .column("rung", |choice| format!("`{}`", choice.rung))
+        .column("error", |choice| format!("{} {}", choice.measure, choice.error))
+        .column("ms, two CPU cores", |choice| choice.ms.clone())
+        .column("ms, a GPU", |choice| choice.gpu.clone())
+        .column("× fast", |choice| choice.times.clone())
+        .note(
+            "Means over each ladder's views: stones of 256 × 256 pixels and one sample a pixel, lit skin and lit stone as their ladders \
+             say. Two CPU cores are lavapipe's, the GPU is an NVIDIA H200.",
+        )
 }

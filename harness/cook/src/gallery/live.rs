@@ -1,1 +1,106 @@
-//! The frames that the live pages run.
+//! The live pages: scenes drawn in the visitor's browser, by the very frames of `cook frame`.
+//!
+//! [`write`] exports, for each rung of each scene and each choice of its effects, a frame, and for each slider the
+//! values of all fields that it moves, as the renderer itself makes them. A page knows buffers, fields and passes; all
+//! that is of a technique is data.
+
+mod again;
+mod export;
+mod fields;
+mod part;
+mod scenes;
+mod slider;
+mod store;
+#[cfg(test)]
+mod tests;
+
+pub use export::settings;
+pub use part::section;
+pub use scenes::{LiveScene, SAMPLES, SCENES, SIDE};
+
+use lapidary_gpu::Gpu;
+use lapidary_render::RenderError;
+use lapidary_render::file::FileError;
+use lapidary_scene::{Scene, SceneError};
+use std::path::{Path, PathBuf};
+use store::Store;
+
+/// Why the live pages' data was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum LiveError {
+    /// A scene does not load.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A frame cannot be made.
+    #[error(transparent)]
+    Render(Box<RenderError>),
+    /// A shader cannot be written.
+    #[error(transparent)]
+    Wgsl(#[from] naga::back::wgsl::Error),
+    /// A description cannot be written.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+    /// A picture cannot be written.
+    #[error(transparent)]
+    Picture(#[from] FileError),
+    /// A rung's name is unknown.
+    #[error("no rung is named `{0}`")]
+    Rung(String),
+    /// A resource's contents are computed by a device.
+    #[error("the contents of `{0}` are computed by a device; take another rung")]
+    LeftOut(String),
+    /// A slider changes more than fields of structs.
+    #[error("slider `{slider}` at {value}: the frame differs in more than fields; narrow its range")]
+    Structure {
+        /// Name of the slider.
+        slider: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// A slider that should move fields in proportion does not.
+    #[error("slider `{slider}`: field `{field}` does not follow in proportion; make a frame for each step")]
+    Bent {
+        /// Name of the slider.
+        slider: &'static str,
+        /// The field.
+        field: String,
+    },
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: std::io::Error,
+    },
+}
+
+/// The path of the picture that stands in a live scene's place before it runs, from the site's folder.
+#[must_use]
+pub fn poster(live: &LiveScene) -> String {
+    format!("images/live/{}.png", live.scene)
+}
+
+/// Writes the data of all live scenes to `data/live` of a site's folder, and the pictures that stand in their place
+/// before they run to `images/live`; returns the bytes of the data.
+///
+/// # Errors
+/// If a scene cannot be drawn or a file not be written.
+pub fn write(folder: &Path, gpu: &Gpu) -> Result<u64, LiveError> {
+    let mut store = Store::new(folder)?;
+    let images = folder.join("images/live");
+    std::fs::create_dir_all(&images).map_err(|error| LiveError::File { path: images, error })?;
+    for live in &SCENES {
+        write_scene(live, &mut store)?;
+        let settings = settings(live, live.rungs[0], |toggle| toggle.on)?;
+        let picture = lapidary_render::render(gpu, &Scene::named(live.scene)?, &settings)?;
+        lapidary_render::file::write(&picture, &folder.join(poster(live)))?;
+    }
+    Ok(store.bytes())
+}
+
+fn write_scene(live: &LiveScene, store: &mut Store) -> Result<export::Manifest, LiveError> {
+    let manifest = export::manifest(live, store)?;
+    store.deliver(live.scene, &manifest)?;
+    Ok(manifest)
+}

@@ -1,7 +1,7 @@
 //! The gallery: a static site with a page for every technique, module, recipe and guide, with every picture, and with
 //! complete WGSL to copy. It can be read from disk, without a network.
 
-mod choices;
+pub mod choices;
 mod guides;
 mod highlight;
 pub mod ladder;
@@ -87,11 +87,19 @@ const OWNER: Owner = Owner { command: "cook gallery", marker: ".lapidary-gallery
 
 /// Files of the site that are the same for every page.
 const ASSETS: &[(&str, &[u8])] = &[
-    ("style.css", include_bytes!("assets/style.css")),
-    ("site.js", include_bytes!("assets/site.js")),
-    ("theme.js", include_bytes!("assets/theme.js")),
-    ("environment.js", include_bytes!("assets/environment.js")),
+    ("check.css", include_bytes!("assets/check.css")),
+    ("check.js", include_bytes!("assets/check.js")),
+    ("compare.css", include_bytes!("assets/compare.css")),
+    ("compare.js", include_bytes!("assets/compare.js")),
     ("diagram.css", include_bytes!("assets/diagram.css")),
+    ("editor.js", include_bytes!("assets/editor.js")),
+    ("environment.js", include_bytes!("assets/environment.js")),
+    ("ladder.css", include_bytes!("assets/ladder.css")),
+    ("live.css", include_bytes!("assets/live.css")),
+    ("piz.js", include_bytes!("assets/piz.js")),
+    ("site.js", include_bytes!("assets/site.js")),
+    ("style.css", include_bytes!("assets/style.css")),
+    ("theme.js", include_bytes!("assets/theme.js")),
 ];
 
 /// A diagram, drawn.

@@ -17,6 +17,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("markdown.html", include_str!("templates/markdown.html")),
     ("parts.html", include_str!("templates/parts.html")),
     ("guide.html", include_str!("templates/guide.html")),
+    ("live.html", include_str!("templates/live.html")),
     ("live_page.html", include_str!("templates/live_page.html")),
     ("mark.svg", include_str!("templates/mark.svg")),
     ("module.html", include_str!("templates/module.html")),

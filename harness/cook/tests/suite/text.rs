@@ -58,6 +58,17 @@ fn the_pictures_are_listed_with_their_captions() {
     generated::keep("snapshots/README.md", &browse::page());
 }
 
+/// The guide to choosing shows the planner's rungs, with the figures of the committed reports.
+#[test]
+fn the_guide_to_choosing_has_the_planners_rungs() {
+    let path = lapidary_cook::repository::place().join("docs/choosing.md");
+    let page = std::fs::read_to_string(path).expect("the page");
+    let table = lapidary_cook::gallery::choices::table().markdown();
+    let filled = page::with_table(&page, page::CHOICES, &table).expect("sound marks");
+    assert!(filled.contains(&table), "choosing.md has no place for the table `{}`", page::CHOICES);
+    generated::keep("docs/choosing.md", &filled);
+}
+
 /// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
 /// it.
 #[test]

@@ -77,7 +77,7 @@ fn live_page(live: &super::LivePage) -> Page {
     let body = templates::render("live_page.html", live);
     let description = "The frames that the renderer makes, run by your browser on your GPU.";
     Page::new("live", path, live.title, description, body)
-        .with(&["ladder.css", "live.css"], &["ladder.js", "environment.js"])
+        .with(&["ladder.css", "live.css"], &["piz.js", "environment.js"])
 }
 
 /// A link in the contents.

@@ -92,7 +92,7 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
     };
     let mut page =
         Page::new("module", path, module.name, &text::plain(&doc.summary), templates::render("module.html", values))
-            .with(&["diagram.css", "check.css"], &["check.js"]);
+            .with(&["diagram.css", "check.css"], &["check.js", "editor.js"]);
     page.entries = vec![Entry::page(module.name, &page.path, &module.header.purpose)];
     page.entries.extend(module.functions.iter().map(|function| Entry::function(function, module.name, &page.path)));
     page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, module.name, &page.path)));

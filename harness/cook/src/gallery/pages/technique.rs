@@ -78,7 +78,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         recipes: of.recipes.iter().copied().map(named).collect(),
     };
     let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
-        .with(&["diagram.css", "ladder.css"], &["ladder.js"]);
+        .with(&["diagram.css", "ladder.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
     if module.is_none() {
         page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));

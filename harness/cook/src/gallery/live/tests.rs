@@ -1,0 +1,166 @@
+use super::export::Manifest;
+use super::fields;
+use super::*;
+use base64::Engine as _;
+use serde_json::Value;
+use std::io::Read as _;
+
+fn scene(name: &str) -> &'static LiveScene {
+    SCENES.iter().find(|live| live.scene == name).expect("a live scene")
+}
+
+/// Exports a scene, and returns what the page needs to know of it.
+fn exported(name: &str) -> (tempfile::TempDir, Manifest, u64) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut store = Store::new(folder.path()).expect("a store");
+    let manifest = write_scene(scene(name), &mut store).expect("exported");
+    let bytes = store.bytes();
+    (folder, manifest, bytes)
+}
+
+/// Reads a stored file as a page does.
+fn stored(site: &Path, name: &str) -> Vec<u8> {
+    let text = std::fs::read_to_string(site.join(format!("data/live/{name}.js"))).expect("a file");
+    let start = format!("gallery.deliver(\"live/{name}\", \"");
+    let base64 = text.strip_prefix(&start).and_then(|rest| rest.strip_suffix("\");\n")).expect("a delivery");
+    let squeezed = base64::engine::general_purpose::STANDARD.decode(base64).expect("base64");
+    let mut bytes = Vec::new();
+    flate2::read::GzDecoder::new(&squeezed[..]).read_to_end(&mut bytes).expect("gzip");
+    bytes
+}
+
+/// Every frame of a scene is whole: all that it names is stored, its shaders are valid, and each field that a slider
+/// moves stands in one of its buffers, or the buffer is left out with its effect.
+fn is_whole(name: &str) {
+    let (folder, manifest, _) = exported(name);
+    let live = scene(name);
+    assert_eq!(manifest.rungs.len(), live.rungs.len());
+    let mut moved: Vec<&str> = Vec::new();
+    for (rung, of) in &manifest.rungs {
+        assert!(!of.frames.is_empty(), "{rung}");
+        for (effects, file) in &of.frames {
+            let document: Value = serde_json::from_slice(&stored(folder.path(), file)).expect("JSON");
+            let resources = document["resources"].as_array().expect("resources");
+            for row in resources.iter().filter(|row| row["contents"].is_string()) {
+                let bytes = stored(folder.path(), row["contents"].as_str().expect("a name"));
+                assert!(row["kind"] != "buffer" || row["bytes"] == bytes.len(), "{rung} {effects}: {}", row["name"]);
+            }
+            for row in document["pipelines"].as_array().expect("pipelines") {
+                let text = stored(folder.path(), row["wgsl"].as_str().expect("a name"));
+                let text = String::from_utf8(text).expect("text");
+                naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{rung} {effects}: {error}"));
+            }
+            // What the camera changes is the scene's pass and what follows, not what was solved before.
+            let view = resources.iter().position(|row| row["name"] == "view").expect("a view").to_string();
+            let again: Vec<u64> = document["again"][&view].as_array().expect("passes").iter().filter_map(Value::as_u64).collect();
+            let passes = document["passes"].as_array().expect("passes");
+            let first = passes.iter().position(|pass| pass["name"] == "scene").expect("a scene's pass") as u64;
+            assert_eq!(again.first(), Some(&first), "{rung} {effects}");
+        }
+        for of in &of.moves {
+            let slider = live.sliders.iter().find(|slider| slider.name == of.slider).expect("a slider");
+            let (values, start) = slider.values(&Scene::named(live.scene).expect("built in"));
+            assert_eq!(of.nodes.len(), values.len(), "{rung}: {}", of.slider);
+            assert!(of.nodes.iter().flatten().all(|value| value.is_finite()), "{rung}: {}", of.slider);
+            assert!(of.nodes.iter().any(|node| *node != of.nodes[start]), "{rung}: {} moves nothing", of.slider);
+            moved.push(of.slider);
+        }
+    }
+    for slider in live.sliders {
+        assert!(moved.contains(&slider.name), "{} moves nothing by any rung", slider.name);
+    }
+}
+
+#[test]
+fn a_stone_is_whole() {
+    is_whole("ruby");
+}
+
+#[test]
+fn a_body_with_shadows_is_whole() {
+    is_whole("skin_ring");
+}
+
+#[test]
+fn a_body_that_is_solved_is_whole() {
+    is_whole("bunny");
+}
+
+/// The fields at a step are those of a frame made from a scene that was changed so.
+#[test]
+fn a_step_is_the_renderers_own_frame() {
+    let (_folder, manifest, _) = exported("bunny");
+    let live = scene("bunny");
+    let original = Scene::named(live.scene).expect("built in");
+    let slider = live.sliders.iter().find(|slider| slider.name == "turn").expect("a slider");
+    let (values, _) = slider.values(&original);
+    let slider::Moves::Scene(change) = slider.moves else { panic!("a change of the scene") };
+    let rung = "godunov-64";
+    let mut of_rung = settings(live, rung, |toggle| toggle.on).expect("settings");
+    let mut turned = original.clone();
+    change(&mut turned, &mut of_rung, values[3]);
+    let frame = lapidary_render::frame(None, &turned, &of_rung).expect("a frame");
+    let moves: Vec<_> = manifest.rungs[rung].moves.iter().filter(|of| of.slider == "turn").collect();
+    assert!(!moves.is_empty());
+    for of in moves {
+        for place in &of.at {
+            assert_eq!(fields::value(&frame, place), of.nodes[3], "{place:?}");
+        }
+    }
+}
+
+#[test]
+fn all_data_fits_the_site() {
+    let bytes: u64 = SCENES.iter().map(|live| exported(live.scene).2).sum();
+    assert!(bytes < 8 << 20, "{bytes}");
+}
+
+#[test]
+fn steps_are_ascending_and_hold_the_scenes_own_value() {
+    for live in &SCENES {
+        let scene = Scene::named(live.scene).expect("built in");
+        for slider in live.sliders {
+            let (values, start) = slider.values(&scene);
+            assert!(values.is_sorted_by(|a, b| a < b), "{}: {values:?}", slider.name);
+            assert_eq!(values[start], (slider.start)(&scene));
+        }
+    }
+}
+
+#[test]
+fn the_part_names_every_rung_and_slider_and_its_scripts_end_nowhere_else() {
+    for live in &SCENES {
+        let text = section(live).expect("a part").0;
+        for rung in live.rungs {
+            assert_eq!(text.matches(&format!("<option>{rung}</option>")).count(), 2, "{rung}");
+        }
+        for slider in live.sliders {
+            assert!(text.contains(&format!("data-slider=\"{}\"", slider.name)));
+        }
+        assert_eq!(text.matches("</script").count(), 1);
+    }
+}
+
+/// One executor for the examples and the gallery, small enough to read.
+#[test]
+fn the_executor_has_at_most_500_lines() {
+    let executor = include_str!("../../../../../docs/engines/frame.js");
+    let drawing = include_str!("../assets/live.js");
+    assert!(executor.lines().count() + drawing.lines().count() <= 500);
+}
+
+#[test]
+#[ignore = "to look at"]
+fn writes_to_look_at() {
+    let folder = std::path::PathBuf::from(std::env::var_os("LIVE_OUT").expect("LIVE_OUT"));
+    let gpu = Gpu::shared(&lapidary_gpu::AdapterChoice::from_environment()).expect("a device");
+    let start = std::time::Instant::now();
+    println!("{} bytes, {:?}", write(&folder, gpu).expect("written"), start.elapsed());
+    std::fs::create_dir_all(folder.join("live")).expect("a folder");
+    for live in &SCENES {
+        let part = section(live).expect("a part").0;
+        let style = "<link rel=stylesheet href=../style.css><link rel=stylesheet href=../live.css>";
+        let page = ["<!doctype html><html lang=en data-root=\"../\"><meta charset=utf-8>", style, "<script src=../site.js defer></script><script src=../environment.js defer></script><body><main>", &part, "</main><div id=status></div>"].concat();
+        std::fs::write(folder.join(format!("live/{}.html", live.scene)), page).expect("written");
+    }
+}
