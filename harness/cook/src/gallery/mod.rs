@@ -94,11 +94,15 @@ const ASSETS: &[(&str, &[u8])] = &[
     ("diagram.css", include_bytes!("assets/diagram.css")),
     ("editor.js", include_bytes!("assets/editor.js")),
     ("environment.js", include_bytes!("assets/environment.js")),
+    ("fonts/OFL.txt", include_bytes!("assets/fonts/OFL.txt")),
+    ("fonts/stix-two-math.woff2", include_bytes!("assets/fonts/stix-two-math.woff2")),
     ("ladder.css", include_bytes!("assets/ladder.css")),
     ("live.css", include_bytes!("assets/live.css")),
+    ("math.css", include_bytes!("assets/math.css")),
     ("piz.js", include_bytes!("assets/piz.js")),
     ("site.js", include_bytes!("assets/site.js")),
     ("style.css", include_bytes!("assets/style.css")),
+    ("syntax.css", include_bytes!("assets/syntax.css")),
     ("theme.js", include_bytes!("assets/theme.js")),
 ];
 
