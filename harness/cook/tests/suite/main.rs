@@ -15,6 +15,7 @@ mod contract;
 mod cost;
 mod curvature;
 mod deferred;
+mod diagrams;
 mod diffusion;
 mod dispatch;
 mod effects_off;
