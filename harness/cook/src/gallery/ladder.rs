@@ -63,7 +63,8 @@ struct Shown<'a> {
     /// The report's file, and the command that measures it again.
     report: &'a str,
     drawings: Vec<Drawing>,
-    series: Vec<Series>,
+    /// By number; those without a rung are left out.
+    series: Vec<Option<Series>>,
     rows: Vec<Row<'a>>,
     /// Whether the table has a column of frames that the stone fills.
     filled: bool,
@@ -103,9 +104,10 @@ struct Compare<'a> {
 
 #[derive(Serialize)]
 struct Compared<'a> {
-    #[serde(flatten)]
     picture: &'a RungPicture,
     href: String,
+    /// The picture to subtract.
+    exact: Option<String>,
     alt: String,
     /// Its error and its time, in words; empty for the reference and what the ladder did not measure.
     figures: String,
@@ -150,7 +152,13 @@ impl<'a> Shown<'a> {
             ),
             report: kind.report,
             drawings: plot::drawings(&points),
-            series: series.map(|((_, name), mark)| Series { name, mark }).collect(),
+            series: series
+                .enumerate()
+                .map(|(at, ((_, name), mark))| {
+                    let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == at);
+                    is_there.then_some(Series { name, mark })
+                })
+                .collect(),
             filled: steps.iter().any(|step| filled(&step.rung).is_some()),
             rows: steps
                 .iter()
@@ -182,13 +190,15 @@ impl<'a> Compare<'a> {
         let [left, right] = pair;
         let compared = |picture: &'a RungPicture| {
             let step = steps.iter().find(|step| step.rung == picture.rung);
-            let figures = step.map_or_else(String::new, |step| {
+            let unmeasured = if picture.rung == REFERENCE { "" } else { "not measured in this ladder" };
+            let figures = step.map_or_else(|| unmeasured.to_owned(), |step| {
                 format!("{} {}, {:.1} ms in the ladder’s mean", kind.error, figure(step.error), step.ms)
             });
             let qualities = qualities(kind, &picture.rung).join(", ");
             Compared {
                 picture,
                 href: format!("{root}{}", picture.file),
+                exact: picture.exact.as_ref().map(|file| format!("{root}{file}")),
                 alt: format!("{} drawn by {}", kind.scene(), picture.rung),
                 figures,
                 choice: if qualities.is_empty() { picture.rung.clone() } else { format!("{} ({qualities})", picture.rung) },
@@ -221,6 +231,7 @@ fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
         front: is_front(kind, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
         qualities,
+        paper: kind.paper.contains(&step.rung.as_str()),
         href,
     }
 }

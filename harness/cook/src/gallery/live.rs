@@ -50,12 +50,14 @@ pub enum LiveError {
     #[error("the contents of `{0}` are computed by a device; take another rung")]
     LeftOut(String),
     /// A slider changes more than fields of structs.
-    #[error("slider `{slider}` at {value}: the frame differs in more than fields; narrow its range")]
+    #[error("slider `{slider}` at {value}: the frame differs in more than fields of structs: {what}; narrow its range")]
     Structure {
         /// Name of the slider.
         slider: &'static str,
         /// Its value.
         value: f32,
+        /// What differs.
+        what: String,
     },
     /// A slider that should move fields in proportion does not.
     #[error("slider `{slider}`: field `{field}` does not follow in proportion; make a frame for each step")]

@@ -43,7 +43,9 @@ pub fn pairs(module: &Module, sources: &[String]) -> Vec<Pair> {
     let pair = |name: &str| {
         let short = name.strip_prefix(&prefix)?;
         let wgsl = declaration(module.whole, "fn ", name)?;
-        let rust = sources.iter().find_map(|source| declaration(source, "fn ", short))?;
+        // A name that is a keyword of Rust's is written as r#NAME.
+        let rust = |keyword| sources.iter().find_map(|source| declaration(source, keyword, short));
+        let rust = rust("fn ").or_else(|| rust("fn r#"))?;
         let (wgsl, rust) = aligned(&wgsl, &rust);
         Some(Pair { name: name.to_owned(), wgsl, rust })
     };

@@ -74,6 +74,9 @@ pub enum GalleryError {
     /// The ladders were not drawn.
     #[error(transparent)]
     Ladder(#[from] ladder::LadderError),
+    /// The live scenes were not written.
+    #[error(transparent)]
+    Live(#[from] live::LiveError),
     /// The property rows were not written.
     #[error(transparent)]
     Rows(#[from] rows::RowsError),
@@ -122,6 +125,7 @@ struct LivePage {
     scene: &'static str,
     title: &'static str,
     body: Markup,
+    ladder: &'static str,
 }
 
 /// What pages are made of.
@@ -166,6 +170,14 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
             ladders.insert(of.kind.name.to_owned(), ladder::section(of.kind, &of.pictures, "../")?);
         }
     }
+    let mut live = Vec::new();
+    if let Some(gpu) = site.device {
+        live::write(folder, gpu)?;
+        for scene in &live::SCENES {
+            live.push(LivePage { scene: scene.scene, title: scene.title, body: live::section(scene)?, ladder: scene.ladder });
+        }
+    }
+    rows::write(folder)?;
     let parts = Parts {
         adapter: &site.adapter,
         places: Places::new(&shown),
@@ -175,8 +187,8 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
         choices: choices::all(),
         diagrams: diagrams(),
         ladders,
-        editors: BTreeMap::new(),
-        live: Vec::new(),
+        editors: cookbook::modules().iter().filter_map(|module| Some((module.name, rows::editor(module)?))).collect(),
+        live,
         rustdoc: site.rustdoc.is_some(),
     };
     let pages = pages::all(&parts);
@@ -266,7 +278,7 @@ fn diagrams() -> Vec<DrawnDiagram> {
         module: of.module,
         title: of.title,
         caption: text::prose(of.caption),
-        svg: of.inline(),
+        svg: Markup(of.inline()),
     };
     diagram::all().iter().map(drawn).collect()
 }

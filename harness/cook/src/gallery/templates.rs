@@ -1,7 +1,7 @@
 //! The site's templates: every tag of it is in `templates/`, and what Rust fills in is escaped there.
 
 use minijinja::value::{Serde, Value};
-use minijinja::{Environment, syntax::SyntaxConfig};
+use minijinja::{AutoEscape, Environment, syntax::SyntaxConfig};
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -9,7 +9,6 @@ use std::sync::LazyLock;
 const TEXTS: &[(&str, &str)] = &[
     ("base.html", include_str!("templates/base.html")),
     ("compare.html", include_str!("templates/compare.html")),
-    ("diagram.xml", include_str!("templates/diagram.xml")),
     ("editor.html", include_str!("templates/editor.html")),
     ("figure.html", include_str!("templates/figure.html")),
     ("figure_alone.html", include_str!("templates/figure_alone.html")),
@@ -32,6 +31,12 @@ static TEMPLATES: LazyLock<Environment<'static>> = LazyLock::new(|| {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
     let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_formatter(|output, state, value| {
+        if value.is_undefined() || matches!(state.auto_escape(), AutoEscape::None) || value.is_safe() {
+            return minijinja::escape_formatter(output, state, value);
+        }
+        Ok(output.write_str(&escaped(&value.to_string()))?)
+    });
     environment.set_syntax(syntax.unwrap_or_else(|error| panic!("the default delimiters: {error:#}")));
     for &(name, text) in TEXTS {
         environment.add_template(name, text).unwrap_or_else(|error| panic!("templates/{name}: {error:#}"));
@@ -61,7 +66,39 @@ impl Serialize for Markup {
     }
 }
 
-/// Returns text as a template would write it, for HTML that a library writes.
+/// Returns text as a template writes it, in elements and in attributes alike. A path's slashes stay.
 pub fn escaped(text: &str) -> String {
-    minijinja::HtmlEscape(text).to_string()
+    let mut html = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => html.push_str("&amp;"),
+            '<' => html.push_str("&lt;"),
+            '>' => html.push_str("&gt;"),
+            '"' => html.push_str("&quot;"),
+            '\'' => html.push_str("&#39;"),
+            other => html.push(other),
+        }
+    }
+    html
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_text_becomes_markup() {
+        assert_eq!(escaped("<a href=\"x\">'&amp;'</a>"), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;amp;&#39;&lt;/a&gt;");
+    }
+
+    #[test]
+    fn a_template_escapes_all_but_markup() {
+        #[derive(Serialize)]
+        struct Values<'a> {
+            prose: Vec<super::super::text::Span>,
+            other: &'a Markup,
+        }
+        let values = Values { prose: super::super::text::prose("<b> & `a/b`"), other: &Markup("<i>".to_owned()) };
+        assert_eq!(render("prose.html", values).0, "<p>&lt;b&gt; &amp; <code>a/b</code></p>");
+    }
 }

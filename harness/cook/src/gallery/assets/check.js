@@ -29,7 +29,8 @@
   /** The float that lies `steps` floats above the one of these bits; both zeros are one. */
   function stepped(bits, steps) {
     int[0] = bits;
-    const place = (int[0] < 0 ? -0x80000000 - int[0] : int[0]) + steps;
+    // The steps may have overflowed, so that the sum does too.
+    const place = ((int[0] < 0 ? -0x80000000 - int[0] : int[0]) + steps) | 0;
     int[0] = place < 0 ? -0x80000000 - place : place;
     return float[0];
   }

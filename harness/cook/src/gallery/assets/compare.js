@@ -6,10 +6,11 @@
 'use strict';
 
 (() => {
-  const gallery = (window.gallery ??= {});
+  // site.js makes `gallery`; without it the pictures work all the same.
+  const site = typeof gallery === 'undefined' ? (window.gallery = {}) : gallery;
   const SVG = 'http://www.w3.org/2000/svg';
   const all = (selector, place = document) => [...place.querySelectorAll(selector)];
-  const say = (text) => gallery.say?.(text);
+  const say = (text) => site.say?.(text);
 
   /** Makes an element of an SVG. */
   const drawn = (name, attributes, text = '') => {
@@ -129,7 +130,7 @@
    * Adds a point to every plot in `place`, a plot or an element around plots. `ms` is the time of the picture that the
    * plot's caption names; where it lies outside the axis, the axis grows. Returns the points.
    */
-  gallery.plotPoint = (place, ms, error, label) => {
+  site.plotPoint = (place, ms, error, label) => {
     if (!(ms > 0) || !(error > 0)) return [];
     const plots = place.matches('svg.plot') ? [place] : all('svg.plot', place);
     return plots.map((svg) => plotted(svg, ms, error, label));
@@ -176,10 +177,8 @@
         const [option] = this.choices[side].selectedOptions;
         if (!option) continue;
         const link = this.figure.querySelector(`.compare-side[data-side=${side}]`);
-        const image = link.querySelector('img');
         link.href = option.dataset.src;
-        if (image.getAttribute('src') !== option.dataset.src) image.src = option.dataset.src;
-        image.alt = option.dataset.alt;
+        link.querySelector('img').alt = option.dataset.alt;
         const told = this.figure.querySelector(`.compare-caption[data-side=${side}] .compare-told`);
         const model = all('template', this.figure).find((template) => template.dataset.rung === option.value);
         told.replaceChildren(model.content.cloneNode(true));
@@ -203,19 +202,30 @@
     /** Shows the difference, or no longer. */
     subtract() {
       const { checked } = this.difference;
+      const options = SIDES.map((side) => this.choices[side].selectedOptions[0]);
+      // The exact pictures have the reference's size and encoding. Where a rung lacks one, those to look at must do.
+      const exact = checked && options.every((option) => option.dataset.exact);
+      SIDES.forEach((side, at) => {
+        const image = this.figure.querySelector(`.compare-side[data-side=${side}] img`);
+        const source = exact ? options[at].dataset.exact : options[at].dataset.src;
+        if (image.getAttribute('src') !== source) image.src = source;
+      });
       this.figure.classList.toggle('is-difference', checked);
       this.figure.querySelector('.compare-times').classList.toggle('is-on', checked);
       this.figure.style.setProperty('--gain', this.gain.value);
       const gain = this.gain.value === '1' ? 'as it is' : `${this.gain.value} times as bright`;
+      const of = exact
+        ? 'of both at the reference’s 256 × 256 pixels, without loss.'
+        : 'of the pictures to look at, whose compression leaves a few steps of 255.';
       this.figure.querySelector('.compare-says').textContent = checked
-        ? `The absolute difference of the two pictures' sRGB values, ${gain}: black is equal.`
+        ? `The absolute difference of sRGB values, ${gain}: black is equal; ${of}`
         : '';
     }
   }
 
   const compares = new Map();
 
-  gallery.compare = (ladder, rungs) => compares.get(ladder)?.show(rungs);
+  site.compare = (ladder, rungs) => compares.get(ladder)?.show(rungs);
 
   /** A point or a rung of a table: shows its picture in the ladder's slider instead of its file. */
   const choose = (event) => {
@@ -312,7 +322,7 @@
     },
   };
 
-  gallery.picture = (name) => {
+  site.picture = (name) => {
     if (name === null) return Lightbox.made?.close();
     const link = Lightbox.links().find((other) => nameOf(other) === name);
     if (link) Lightbox.open(link, link);
@@ -329,7 +339,7 @@
   const follow = () => {
     const [kind, value] = location.hash.slice(1).split('=');
     if (value === undefined) return;
-    if (kind === 'picture') gallery.picture(decodeURIComponent(value));
+    if (kind === 'picture') site.picture(decodeURIComponent(value));
     if (kind !== 'compare') return;
     const [ladder, left, right] = value.split(',').map(decodeURIComponent);
     const compare = compares.get(ladder);

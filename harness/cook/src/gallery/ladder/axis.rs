@@ -38,17 +38,19 @@ impl Axis {
 
 /// Returns round values between the ends: as many of 1 to 9 times a power of ten as can be told apart.
 fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
-    const STEPS: [&[u32]; 3] = [&[1, 2, 3, 4, 5, 6, 8], &[1, 2, 5], &[1]];
+    // In tenths.
+    const FINE: &[u32] = &[10, 12, 14, 16, 18, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90];
+    const STEPS: [&[u32]; 4] = [FINE, &[10, 20, 30, 40, 50, 60, 80], &[10, 20, 50], &[10]];
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
     let of = |parts: &[u32]| -> Vec<f64> {
         let values = powers.clone().flat_map(|power| {
             // Parsed, because a power of ten is not always the nearest number to its digits.
-            parts.iter().filter_map(move |part| format!("{part}e{power}").parse::<f64>().ok())
+            parts.iter().filter_map(move |part| format!("{part}e{}", power - 1).parse::<f64>().ok())
         });
         values.filter(|tick| (low..=high).contains(tick)).collect()
     };
     let all = STEPS.map(of);
-    all.iter().find(|ticks| ticks.len() <= MOST_TICKS).unwrap_or(&all[2]).clone()
+    all.iter().find(|ticks| ticks.len() <= MOST_TICKS).unwrap_or(&all[3]).clone()
 }
 
 #[cfg(test)]
@@ -68,6 +70,7 @@ mod tests {
     #[test]
     fn labels_are_round_and_few() {
         let of = |low: f64, high: f64| Axis::of([low, high].into_iter(), [0.0, 1.0]).ticks;
+        assert_eq!(of(0.11, 0.18), [0.1, 0.12, 0.14, 0.16, 0.18, 0.2]);
         assert_eq!(of(0.2, 0.75), [0.2, 0.3, 0.4, 0.5, 0.6, 0.8]);
         assert_eq!(of(0.7, 159.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
         assert_eq!(of(1e-4, 30.0), [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0]);

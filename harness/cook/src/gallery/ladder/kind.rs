@@ -188,7 +188,9 @@ impl Kind {
     }
 
     /// Returns the shot of a rung.
-    pub(super) fn shot(&self, rung: &'static str) -> Option<Shot> {
+    pub(super) fn shot(&self, rung: &str) -> Option<Shot> {
+        let measured = self.steps().into_iter().map(|step| step.rung.as_str());
+        let rung = measured.chain(self.others.iter().copied()).find(|other| *other == rung)?;
         let like = SHOTS.iter().find(|shot| shot.name == self.like)?;
         let scatters = matches!(self.truth, Truth::Walks(_));
         let with_law = self.technique == Technique::Cdrf && !self.others.contains(&rung);
@@ -198,6 +200,11 @@ impl Kind {
     /// Returns the name of the scene of its pictures.
     pub(super) fn scene(&self) -> &'static str {
         SHOTS.iter().find(|shot| shot.name == self.like).map_or("", |shot| shot.scene)
+    }
+
+    /// Returns the command that draws a rung's picture; empty for a rung that the ladder does not know.
+    pub(super) fn command(&self, rung: &str) -> String {
+        self.shot(rung).map(|shot| shot.command()).unwrap_or_default()
     }
 
     /// Reads the committed report.

@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Name of the reference among a ladder's pictures.
 pub const REFERENCE: &str = "reference";
-/// The share of the best quality at which pictures are compressed that no choice is made by.
+/// The share of the best quality at which pictures to look at are compressed.
 const JPEG_QUALITY: u8 = 92;
 
 /// The picture of a rung.
@@ -23,6 +23,9 @@ pub struct RungPicture {
     pub rung: String,
     /// Its file, below the site's folder.
     pub file: String,
+    /// The same at the size of the reference, without loss and encoded like it, to be subtracted; `None` for rungs by
+    /// which no choice is made.
+    pub exact: Option<String>,
     /// Width and height in pixels.
     pub side: u32,
     /// What drew it, and its driver.
@@ -44,14 +47,8 @@ pub struct LadderPictures {
     pub pictures: Vec<RungPicture>,
 }
 
-/// A picture to draw and the rung that it is of.
-struct Job {
-    rung: &'static str,
-    file: String,
-}
-
-/// Draws all ladders' rungs into the site's folder, as `images/rungs/LADDER/RUNG.png`. Pictures that no choice is made
-/// by are compressed with loss, as `.jpg`.
+/// Draws all ladders' rungs into the site's folder, as `images/rungs/LADDER/RUNG.jpg`, and those by which choices are
+/// made once more as `RUNG.png`, to be subtracted.
 ///
 /// # Errors
 /// Returns an error if a committed reference is damaged, or if the device or the file system fails.
@@ -64,34 +61,29 @@ fn of_kind(gpu: &Gpu, kind: &'static Kind, folder: &Path) -> Result<LadderPictur
     let made = folder.join(place(kind));
     std::fs::create_dir_all(&made).map_err(|error| LadderError::Folder { path: made, error })?;
     if let Some(truth) = kind.truth.read(gpu)? {
-        file::write(&enlarged(gpu, kind, &truth)?, &folder.join(reference_file(kind)))?;
+        save(&enlarged(gpu, kind, &truth)?, &folder.join(file_of(kind, REFERENCE, "jpg")))?;
+        save(&truth, &folder.join(file_of(kind, REFERENCE, "png")))?;
     }
-    jobs(kind, &kind.steps()).par_iter().try_for_each(|job| draw(gpu, kind, job, folder))?;
+    drawn(kind, &kind.steps()).par_iter().try_for_each(|rung| draw(gpu, kind, rung, folder))?;
     Ok(listed(&gpu.describe(), kind))
 }
 
 /// Lists a ladder's pictures as this device draws them.
 pub(super) fn listed(adapter: &str, kind: &'static Kind) -> LadderPictures {
     let steps = kind.steps();
-    let scale = f64::from(SIDE) / f64::from(EXR_SIDE);
     let mut pictures = vec![RungPicture {
         rung: REFERENCE.to_owned(),
-        file: reference_file(kind),
+        file: file_of(kind, REFERENCE, "jpg"),
+        exact: Some(file_of(kind, REFERENCE, "png")),
         side: SIDE,
         adapter: "the CPU".to_owned(),
         samples: kind.truth.description(),
-        note: format!(
-            "Committed at {EXR_SIDE} × {EXR_SIDE} pixels, shown {scale} times as large: edges are softer than the rungs’."
-        ),
+        note: format!("Committed at {EXR_SIDE} × {EXR_SIDE} pixels, enlarged: edges are softer than the rungs’."),
         command: kind.truth.command(),
     }];
-    let jobs = jobs(kind, &steps);
-    for step in &steps {
-        let drawn = kind.pictured(&step.rung, &steps);
-        pictures.extend(jobs.iter().find(|job| job.rung == drawn).map(|job| described(adapter, kind, job, &step.rung)));
-    }
-    let unmeasured = jobs.iter().filter(|job| kind.others.contains(&job.rung));
-    pictures.extend(unmeasured.map(|job| described(adapter, kind, job, job.rung)));
+    let measured = steps.iter().map(|step| step.rung.as_str());
+    let rungs = measured.chain(kind.others.iter().copied());
+    pictures.extend(rungs.map(|rung| described(adapter, kind, rung, kind.pictured(rung, &steps))));
     LadderPictures { kind, pictures }
 }
 
@@ -99,14 +91,10 @@ fn place(kind: &Kind) -> String {
     format!("images/rungs/{}", kind.name)
 }
 
-fn reference_file(kind: &Kind) -> String {
-    format!("{}/{REFERENCE}.png", place(kind))
-}
-
-/// Lists the different pictures of a ladder.
-fn jobs(kind: &Kind, steps: &[&'static Step]) -> Vec<Job> {
+/// Lists the rungs of a ladder that have a picture of their own.
+fn drawn(kind: &Kind, steps: &[&'static Step]) -> Vec<&'static str> {
     let own = steps.iter().map(|step| step.rung.as_str()).filter(|rung| kind.pictured(rung, steps) == *rung);
-    own.chain(kind.others.iter().copied()).map(|rung| Job { rung, file: file_of(kind, rung) }).collect()
+    own.chain(kind.others.iter().copied()).collect()
 }
 
 /// Whether a choice is made by this rung's picture: it is on the front, a default, the paper's, or asked for by name.
@@ -116,21 +104,34 @@ pub(super) fn is_chosen(kind: &Kind, rung: &str) -> bool {
     is_default || is_front || kind.paper.contains(&rung) || kind.others.contains(&rung)
 }
 
-fn file_of(kind: &Kind, rung: &str) -> String {
+/// Returns the file of a rung's picture below the site's folder.
+fn file_of(kind: &Kind, rung: &str, ending: &str) -> String {
     // `+` is a space in some servers' paths.
-    let ending = if is_chosen(kind, rung) { "png" } else { "jpg" };
     format!("{}/{}.{ending}", place(kind), rung.replace('+', "-"))
 }
 
-fn draw(gpu: &Gpu, kind: &Kind, job: &Job, folder: &Path) -> Result<(), LadderError> {
-    let Some(shot) = kind.shot(job.rung) else { return Ok(()) };
+/// Draws a rung's pictures.
+fn draw(gpu: &Gpu, kind: &Kind, rung: &'static str, folder: &Path) -> Result<(), LadderError> {
+    let Some(shot) = kind.shot(rung) else { return Ok(()) };
     let scene = shot.open().map_err(crate::snapshot::SnapshotError::from)?;
-    let picture = render::render(gpu, &scene, &shot.settings(SIDE))?;
-    let path = folder.join(&job.file);
-    if job.file.ends_with(".png") {
-        return Ok(file::write(&picture, &path)?);
+    let settings = shot.settings(SIDE);
+    let picture = render::render(gpu, &scene, &settings)?;
+    save(&picture, &folder.join(file_of(kind, rung, "jpg")))?;
+    if is_chosen(kind, rung) {
+        let mut small = shrunk(&picture, EXR_SIDE);
+        render::encode(gpu, &settings, &mut small)?;
+        save(&small, &folder.join(file_of(kind, rung, "png")))?;
     }
-    Ok(file::replace(&path, &jpeg(&picture).map_err(|reason| file::FileError::Encode { path: path.clone(), reason })?)?)
+    Ok(())
+}
+
+/// Writes a picture in the format of its file's name.
+fn save(picture: &Picture, path: &Path) -> Result<(), file::FileError> {
+    if path.extension().is_some_and(|extension| extension == "png") {
+        return file::write(picture, path);
+    }
+    let bytes = jpeg(picture).map_err(|reason| file::FileError::Encode { path: path.to_owned(), reason })?;
+    file::replace(path, &bytes)
 }
 
 fn jpeg(picture: &Picture) -> Result<Vec<u8>, String> {
@@ -142,21 +143,49 @@ fn jpeg(picture: &Picture) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn described(adapter: &str, kind: &Kind, job: &Job, rung: &str) -> RungPicture {
-    let note = match (rung == job.rung, job.file.ends_with(".jpg")) {
-        (false, _) => format!("It follows the same rays or costs as {0}, in another way; this is the picture of {0}.", job.rung),
-        (true, true) => "Compressed with loss, by up to a few steps of 255.".to_owned(),
-        _ => String::new(),
+fn described(adapter: &str, kind: &Kind, rung: &str, drawn: &str) -> RungPicture {
+    let note = if kind.others.contains(&rung) {
+        "Without the law of a half space and cast shadows, which the ladder’s pictures have; so it has no place in the plot.".to_owned()
+    } else if rung != drawn {
+        format!("It finds what {drawn} finds, in another way; this is the picture of {drawn}.")
+    } else {
+        String::new()
     };
     RungPicture {
         rung: rung.to_owned(),
-        file: job.file.clone(),
+        file: file_of(kind, drawn, "jpg"),
+        exact: is_chosen(kind, drawn).then(|| file_of(kind, drawn, "png")),
         side: SIDE,
         adapter: adapter.to_owned(),
         samples: format!("{SAMPLES} × {SAMPLES} samples a pixel"),
         note,
-        command: kind.shot(job.rung).map(|shot| shot.command()).unwrap_or_default(),
+        command: kind.command(drawn),
     }
+}
+
+/// Returns the linear radiance at a smaller size: each pixel is the mean over its area.
+fn shrunk(picture: &Picture, side: u32) -> Picture {
+    let scale = f64::from(picture.width) / f64::from(side);
+    // The share of each old pixel in a new one, along an axis.
+    let shares = |at: u32| -> Vec<(usize, f64)> {
+        let [start, end] = [f64::from(at) * scale, f64::from(at + 1) * scale];
+        let old = start.floor() as usize..(end.ceil() as usize).min(picture.width as usize);
+        old.map(|old| (old, (end.min(old as f64 + 1.0) - start.max(old as f64)) / scale)).collect()
+    };
+    let axis: Vec<Vec<(usize, f64)>> = (0..side).map(shares).collect();
+    let pixel = |index: u32| -> [f32; 4] {
+        let mut sum = [0.0_f64; 4];
+        for &(row, down) in &axis[(index / side) as usize] {
+            for &(column, along) in &axis[(index % side) as usize] {
+                let old = picture.linear[row * picture.width as usize + column];
+                sum.iter_mut().zip(old).for_each(|(sum, old)| *sum += down * along * f64::from(old));
+            }
+        }
+        sum.map(|value| value as f32)
+    };
+    let linear: Vec<[f32; 4]> = (0..side * side).map(pixel).collect();
+    let encoded = vec![[0; 4]; linear.len()];
+    Picture { width: side, height: side, linear, encoded, lost: None, walked: None, notes: Vec::new() }
 }
 
 /// Returns the reference at the size of the rungs' pictures, interpolated in linear radiance, and encoded like them.
@@ -169,9 +198,30 @@ fn enlarged(gpu: &Gpu, kind: &Kind, truth: &Picture) -> Result<Picture, LadderEr
     // The interpolation overshoots at edges.
     let linear: Vec<[f32; 4]> = image.pixels().map(|pixel| pixel.0.map(|value| value.max(0.0))).collect();
     let encoded = vec![[0; 4]; linear.len()];
-    let mut picture = Picture { width: SIDE, height: SIDE, linear, encoded, ..truth.clone() };
+    let mut picture = Picture { width: SIDE, height: SIDE, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     let usual = Settings::of_size(SIDE, SIDE);
     let settings = kind.steps().first().and_then(|step| kind.shot(&step.rung)).map_or(usual, |shot| shot.settings(SIDE));
     render::encode(gpu, &settings, &mut picture)?;
     Ok(picture)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smaller_picture_has_the_means_of_the_larger_one() {
+        // Three columns, 1, 2 and 6, as two: each takes half of the middle one.
+        let linear: Vec<[f32; 4]> = (0..9).map(|at| [[1.0, 2.0, 6.0][at % 3], at as f32, 0.0, 1.0]).collect();
+        let encoded = vec![[0; 4]; 9];
+        let picture = Picture { width: 3, height: 3, linear, encoded, lost: None, walked: None, notes: Vec::new() };
+        let small = shrunk(&picture, 2);
+        let close = |found: f32, expected: f32| (found - expected).abs() < 1e-6;
+        for row in small.linear.chunks(2) {
+            assert!(close(row[0][0], 4.0 / 3.0) && close(row[1][0], 14.0 / 3.0), "{row:?}");
+            assert!(close(row[0][3], 1.0));
+        }
+        let mean = small.linear.iter().map(|pixel| pixel[1]).sum::<f32>() / 4.0;
+        assert!(close(mean, 4.0), "{mean}");
+    }
 }

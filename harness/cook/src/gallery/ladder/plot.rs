@@ -15,6 +15,8 @@ pub(super) struct Point {
     pub front: bool,
     /// The qualities that choose it.
     pub qualities: Vec<&'static str>,
+    /// Whether it is the paper's.
+    pub paper: bool,
     /// Its picture, relative to the page; `None` if there is none.
     pub href: Option<String>,
     /// What a reader is told of it.
@@ -178,8 +180,9 @@ const REACHES: [f64; 4] = [10.0, 22.0, 36.0, 52.0];
 /// Places labels so that they overlap neither each other nor points. Defaults come first; a rung of the front that has
 /// no room gets none.
 fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
-    let mut order: Vec<usize> = (0..points.len()).filter(|at| points[*at].front || !points[*at].qualities.is_empty()).collect();
-    order.sort_by_key(|at| points[*at].qualities.is_empty());
+    let is_named = |at: &usize| points[*at].front || points[*at].paper || !points[*at].qualities.is_empty();
+    let mut order: Vec<usize> = (0..points.len()).filter(is_named).collect();
+    order.sort_by_key(|at| (points[*at].qualities.is_empty(), !points[*at].paper));
     let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
     let mut taken: Vec<Area> = Vec::new();
     let mut labels = vec![None; points.len()];
@@ -188,12 +191,15 @@ fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<
         if point.qualities.is_empty() && !format.labels {
             continue;
         }
+        let named = if point.paper { format!("{} (the paper)", point.rung) } else { point.rung.clone() };
         let text = match point.qualities.as_slice() {
-            [] => point.rung.clone(),
-            qualities => format!("{}: {}", qualities.join(", "), point.rung),
+            [] => named,
+            qualities => format!("{}: {named}", qualities.join(", ")),
         };
         let width = LETTER[0] * text.chars().count() as f64;
-        let candidates = candidates(width, places[at]);
+        // A default has a ring.
+        let ring = if point.qualities.is_empty() { 0.0 } else { 5.0 };
+        let candidates = candidates(width, ring, places[at]);
         let fits = |area: &Area| {
             let [left, top, right, bottom] = format.area;
             area[0] >= left && area[1] >= top - 14.0 && area[2] <= right && area[3] <= bottom
@@ -214,13 +220,14 @@ fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<
     labels
 }
 
-/// Returns the places for a label of this width, the best first.
-fn candidates(width: f64, [x, y]: [f64; 2]) -> Vec<(Label, Area)> {
+/// Returns the places for a label of this width about a point with a ring of this width, the best first.
+fn candidates(width: f64, ring: f64, [x, y]: [f64; 2]) -> Vec<(Label, Area)> {
     let mut all = Vec::new();
     for reach in REACHES {
         let side = reach.min(22.0);
         for (dx, dy) in [(side, -reach), (side, 0.0), (-side, reach), (-side, 0.0), (side, reach), (-side, -reach)] {
             let (dx, dy) = if reach == REACHES[0] && dy != 0.0 { (dx * 0.6, dy * 1.1) } else { (dx, dy) };
+            let dx = dx + ring.copysign(dx);
             let [left, anchor] = if dx > 0.0 { [x + dx, 0.0] } else { [x + dx - width, 1.0] };
             let middle = y + dy;
             let area = [left, middle - 0.5 * LETTER[1], left + width, middle + 0.5 * LETTER[1]];
@@ -237,7 +244,7 @@ mod tests {
 
     fn point(rung: &str, ms: f64, error: f64, front: bool, qualities: &[&'static str]) -> Point {
         let title = format!("{rung}: {error}");
-        Point { rung: rung.to_owned(), ms, error, series: 1, front, qualities: qualities.into(), href: None, title }
+        Point { rung: rung.to_owned(), ms, error, series: 1, front, qualities: qualities.into(), paper: false, href: None, title }
     }
 
     #[test]

@@ -300,7 +300,11 @@ impl Sliding<'_> {
         let (mut scene, mut settings) = (self.scene.clone(), self.settings.clone());
         change(&mut scene, &mut settings, self.values[step]);
         let next = lapidary_render::frame(None, &scene, &settings)?;
-        let refused = || LiveError::Structure { slider: self.slider.name, value: self.values[step] };
+        let refused = || LiveError::Structure {
+            slider: self.slider.name,
+            value: self.values[step],
+            what: fields::difference(&self.base.frame, &next),
+        };
         fields::changed(&self.base.frame, &next).ok_or_else(refused)
     }
 

@@ -172,3 +172,33 @@ fn names_field(text: &str, field: &str) -> bool {
         !next.is_some_and(|letter| letter.is_alphanumeric() || letter == '_')
     })
 }
+
+/// Says what of another frame differs in more than the fields of its buffers.
+#[must_use]
+pub fn difference(frame: &Frame, next: &Frame) -> String {
+    let lengths = |frame: &Frame| [frame.resources.len(), frame.pipelines.len(), frame.bind_groups.len(), frame.passes.len()];
+    if lengths(frame) != lengths(next) {
+        return format!("{:?} resources, pipelines, bind groups and passes become {:?}", lengths(frame), lengths(next));
+    }
+    let pairs = frame.pipelines.iter().zip(&next.pipelines);
+    let text = |pipeline: &lapidary_render::frame::Pipeline| pipeline.shader.wgsl().unwrap_or_default();
+    if let Some((one, _)) = pairs.clone().find(|(one, other)| text(one) != text(other)) {
+        return format!("the shader of `{}`", one.name);
+    }
+    let pairs = frame.resources.iter().zip(&next.resources);
+    let differ = |(one, other): &(&Resource, &Resource)| one.bytes() != other.bytes() || (one.kind != other.kind && layout(one).is_none());
+    let names: Vec<&str> = pairs.filter(differ).map(|(one, _)| one.name.as_str()).collect();
+    if !names.is_empty() {
+        return names.join(", ");
+    }
+    if frame.passes != next.passes {
+        return "passes".to_owned();
+    }
+    if frame.bind_groups != next.bind_groups {
+        return "bind groups".to_owned();
+    }
+    let fixed = |(one, other): &(&Resource, &Resource)| one.kind != other.kind && frame.changes(next).is_none();
+    let pairs = frame.resources.iter().zip(&next.resources);
+    let names: Vec<&str> = pairs.filter(fixed).map(|(one, _)| one.name.as_str()).collect();
+    if names.is_empty() { "bytes outside of fields".to_owned() } else { format!("{} cannot be written", names.join(", ")) }
+}

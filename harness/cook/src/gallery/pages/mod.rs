@@ -64,7 +64,7 @@ impl Page {
 pub fn all(parts: &Parts<'_>) -> Vec<Page> {
     let mut pages = vec![start::page(parts)];
     pages.extend(TECHNIQUES.iter().map(|of| technique::page(parts, of)));
-    pages.extend(parts.live.iter().map(|live| live_page(live)));
+    pages.extend(parts.live.iter().map(|live| live_page(parts, live)));
     pages.extend(GUIDES.iter().chain(&ENGINES).map(|of| guide::page(parts, of)));
     pages.push(pictures::page(parts));
     pages.extend(cookbook::modules().iter().map(|of| module::page(parts, of)));
@@ -72,12 +72,20 @@ pub fn all(parts: &Parts<'_>) -> Vec<Page> {
     pages
 }
 
-fn live_page(live: &super::LivePage) -> Page {
+#[derive(Serialize)]
+struct Live<'a> {
+    live: &'a super::LivePage,
+    ladder: Option<&'a Markup>,
+}
+
+fn live_page(parts: &Parts<'_>, live: &super::LivePage) -> Page {
     let path = ["live/", live.scene, ".html"].concat();
-    let body = templates::render("live_page.html", live);
+    let body = templates::render("live_page.html", Live { live, ladder: parts.ladders.get(live.ladder) });
     let description = "The frames that the renderer makes, run by your browser on your GPU.";
-    Page::new("live", path, live.title, description, body)
-        .with(&["ladder.css", "live.css"], &["piz.js", "environment.js"])
+    let mut page = Page::new("live", path, live.title, description, body)
+        .with(&["ladder.css", "live.css"], &["piz.js", "environment.js"]);
+    page.entries = vec![Entry::page(live.title, &page.path, description)];
+    page
 }
 
 /// A link in the contents.
