@@ -7,6 +7,11 @@
 // or, for a frame after a frame, without reading anything back:
 //
 //   frame.draw((pass) => pass.kind !== 'read');
+//
+// or what has changed alone, after fields were written:
+//
+//   frame.write(frame.buffers('view')[0], 'eye', [0, 0, 5]);
+//   frame.update();
 
 /** The version of frame.json that this file reads. */
 const VERSION = 4;
@@ -26,27 +31,30 @@ const TEXEL_BYTES = {
 /** Or-s the flags of WebGPU's names. */
 const flags = (names, all) => names.reduce((sum, name) => sum | all[name], 0);
 
-/** Fetches a file, as JSON, text or bytes. */
-async function fetched(folder, file, as) {
+/** Reads the files of a folder by `fetch`, as `json`, `text` or `arrayBuffer`. */
+const fetching = (folder) => async (file, as) => {
   const path = file.split('/').map(encodeURIComponent).join('/');
   const response = await fetch(`${folder}/${path}`);
   if (!response.ok) throw new Error(`${folder}/${file}: ${response.status}`);
   return response[as]();
-}
+};
 
 export class Frame {
-  /** Makes everything that the frame in a folder needs; nothing is drawn yet. */
-  static async load(device, folder) {
+  /** Makes everything that a frame needs; nothing is drawn yet. It comes from a folder's URL, or by a function of a
+   * file's name and `json`, `text` or `arrayBuffer`. `limits` are those of the device. */
+  static async load(device, from, limits = device.limits) {
     const frame = new Frame();
+    const read = typeof from === 'string' ? fetching(from) : from;
     frame.device = device;
-    frame.rows = await fetched(folder, 'frame.json', 'json');
+    frame.rows = await read('frame.json', 'json');
     if (frame.rows.version !== VERSION) throw new Error(`a frame of version ${frame.rows.version}, not ${VERSION}`);
     const { resources, pipelines, bind_groups } = frame.rows;
-    const bytes = (file) => (file === null ? null : fetched(folder, file, 'arrayBuffer'));
+    const bytes = (file) => (file === null ? null : read(file, 'arrayBuffer'));
     frame.contents = await Promise.all(resources.map((row) => bytes(row.contents ?? null)));
-    const texts = await Promise.all(pipelines.map((row) => fetched(folder, row.wgsl, 'text')));
+    frame.texts = await Promise.all(pipelines.map((row) => read(row.wgsl, 'text')));
+    frame.#check(limits);
     frame.resources = resources.map((row, place) => frame.#resource(row, frame.contents[place]));
-    frame.pipelines = await Promise.all(pipelines.map((row, place) => frame.#pipeline(row, texts[place])));
+    frame.pipelines = await Promise.all(pipelines.map((row, place) => frame.#pipeline(row, frame.texts[place])));
     frame.groups = bind_groups.map((row) => frame.#group(row));
     return frame;
   }
@@ -73,11 +81,44 @@ export class Frame {
     return pictures;
   }
 
-  /** Submits the passes that a test selects, by default all that do not read back. */
-  draw(selects = (pass) => pass.kind !== 'read') {
+  /** Submits the passes that a test selects, by default all that do not read back. A set of two timestamp queries gets
+   * when they begin and when they end. */
+  draw(selects = (pass) => pass.kind !== 'read', querySet = null) {
     const encoder = this.device.createCommandEncoder();
-    for (const pass of this.rows.passes.filter(selects)) this.#encode(encoder, pass);
+    const passes = this.rows.passes.filter(selects);
+    const timed = passes.filter(({ kind }) => querySet && (kind === 'render' || kind === 'compute'));
+    for (const pass of passes) {
+      const begins = pass === timed[0] && { beginningOfPassWriteIndex: 0 };
+      const ends = pass === timed.at(-1) && { endOfPassWriteIndex: 1 };
+      this.#encode(encoder, pass, begins || ends ? { querySet, ...begins, ...ends } : undefined);
+    }
     this.device.queue.submit([encoder.finish()]);
+  }
+
+  /** Submits the passes whose results change with what was written since the last time, which the frame lists for each
+   * resource in `again`; all of them the first time, or if there is no list. */
+  update() {
+    const { again, passes } = this.rows;
+    const all = passes.map((_, place) => place);
+    const places = this.#changed && again ? [...this.#changed].flatMap((resource) => again[resource] ?? all) : all;
+    this.#changed = new Set();
+    this.draw((pass) => pass.kind !== 'read' && places.includes(passes.indexOf(pass)));
+  }
+
+  /** Milliseconds that the device takes for all passes, the median of some runs: by its own clock if it has the
+   * feature `timestamp-query`, by this page's otherwise. */
+  async time(runs = 9) {
+    const clock = this.device.features.has('timestamp-query') && this.#clock();
+    const times = [];
+    for (let run = 0; run < runs; run++) {
+      await this.device.queue.onSubmittedWorkDone();
+      const begin = performance.now();
+      this.draw(undefined, clock?.queries);
+      const passed = clock && (await clock.read());
+      await this.device.queue.onSubmittedWorkDone();
+      times.push(passed || performance.now() - begin);
+    }
+    return times.sort((a, b) => a - b)[runs >> 1];
   }
 
   /** The buffers of a name that hold a struct; a name is shared by all tiles. */
@@ -86,22 +127,79 @@ export class Frame {
     return [...places].filter((place) => this.rows.resources[place].layout && this.rows.resources[place].name === name);
   }
 
+  /** Where a field of a buffer stands, in the struct of this number. */
+  #field(place, name, element) {
+    const { bytes, fields } = this.rows.resources[place].layout;
+    const { offset, type } = fields.find((field) => field.name === name);
+    return { offset: element * bytes + offset, type };
+  }
+
   /** The initial value of a field of a buffer, as floats. */
-  field(place, name) {
-    const { offset, type } = this.rows.resources[place].layout.fields.find((field) => field.name === name);
+  field(place, name, element = 0) {
+    const { offset, type } = this.#field(place, name, element);
     const count = { f32: 1, 'vec2<f32>': 2, 'vec3<f32>': 3, 'vec4<f32>': 4, 'mat4x4<f32>': 16 }[type];
     return new Float32Array(this.contents[place], offset, count);
   }
 
   /** Writes a field of a buffer. */
-  write(place, name, floats) {
-    const { offset } = this.rows.resources[place].layout.fields.find((field) => field.name === name);
+  write(place, name, floats, element = 0) {
+    const { offset } = this.#field(place, name, element);
     this.device.queue.writeBuffer(this.resources[place], offset, Float32Array.from(floats));
+    this.#changed?.add(place);
+  }
+
+  /** Gives a texture of one level another width, height and contents. */
+  replace(place, [width, height], contents) {
+    const row = this.rows.resources[place];
+    row.size = [width, height, row.size[2]];
+    this.resources[place].destroy();
+    this.resources[place] = this.#resource(row, contents);
+    this.groups = this.rows.bind_groups.map((row) => this.#group(row));
+    this.#changed?.add(place);
   }
 
   /** Frees what the frame holds on the device. */
   destroy() {
     for (const resource of this.resources) resource.destroy?.();
+  }
+
+  /** Places of resources that were written since the last update; null before the first one. */
+  #changed = null;
+
+  /** Refuses a device that is too small. */
+  #check(limits) {
+    const { resources } = this.rows;
+    const bytes = Math.max(...resources.map((row) => row.bytes ?? 0));
+    const needs = {
+      maxTextureDimension2D: Math.max(...resources.flatMap(({ size }) => size?.slice(0, 2) ?? 0)),
+      maxBufferSize: bytes,
+      maxStorageBufferBindingSize: bytes,
+      maxStorageBuffersPerShaderStage: Math.max(...this.texts.map((text) => text.split('var<storage').length - 1)),
+    };
+    for (const [name, need] of Object.entries(needs)) {
+      const there = limits[name];
+      if (there < need) throw new Error(`this graphics device is too small: its ${name} is ${there}, not ${need}`);
+    }
+  }
+
+  /** Two timestamps, and what reads the milliseconds between them. */
+  #clock() {
+    const { device } = this;
+    const queries = device.createQuerySet({ type: 'timestamp', count: 2 });
+    const uses = [['QUERY_RESOLVE', 'COPY_SRC'], ['COPY_DST', 'MAP_READ']];
+    const usages = uses.map((names) => flags(names, GPUBufferUsage));
+    const [resolved, mapped] = usages.map((usage) => device.createBuffer({ size: 16, usage }));
+    const read = async () => {
+      const encoder = device.createCommandEncoder();
+      encoder.resolveQuerySet(queries, 0, 2, resolved, 0);
+      encoder.copyBufferToBuffer(resolved, 0, mapped, 0, 16);
+      device.queue.submit([encoder.finish()]);
+      await mapped.mapAsync(GPUMapMode.READ);
+      const [begin, end] = new BigUint64Array(mapped.getMappedRange());
+      mapped.unmap();
+      return Number(end - begin) / 1e6;
+    };
+    return { queries, read };
   }
 
   #resource(row, contents) {
@@ -160,12 +258,12 @@ export class Frame {
     return this.device.createBindGroup({ layout, entries });
   }
 
-  #encode(encoder, pass) {
+  #encode(encoder, pass, timestampWrites) {
     const { resources } = this;
     if (pass.kind === 'render') {
-      this.#render(encoder, pass);
+      this.#render(encoder, pass, timestampWrites);
     } else if (pass.kind === 'compute') {
-      this.#compute(encoder, pass);
+      this.#compute(encoder, pass, timestampWrites);
     } else if (pass.kind === 'clear') {
       encoder.clearBuffer(resources[pass.buffer], 0, pass.bytes);
     } else if (pass.kind === 'copy') {
@@ -187,7 +285,7 @@ export class Frame {
     draw.groups.forEach((group, number) => group !== null && encoder.setBindGroup(number, this.groups[group]));
   }
 
-  #render(encoder, pass) {
+  #render(encoder, pass, timestampWrites) {
     const colorAttachments = pass.targets.map(({ texture, layer, clear }) => {
       const view = this.#layer(texture, layer);
       return { view, clearValue: clear ?? undefined, loadOp: clear ? 'clear' : 'load', storeOp: 'store' };
@@ -198,7 +296,8 @@ export class Frame {
       depthLoadOp: pass.depth.load ? 'load' : 'clear',
       depthStoreOp: pass.depth.keep ? 'store' : 'discard',
     };
-    const render = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment: depth ?? undefined });
+    const depthStencilAttachment = depth ?? undefined;
+    const render = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment, timestampWrites });
     if (pass.viewport) render.setViewport(...pass.viewport, 0, 1);
     for (const draw of pass.draws) {
       this.#bind(render, draw);
@@ -208,8 +307,8 @@ export class Frame {
     render.end();
   }
 
-  #compute(encoder, pass) {
-    const compute = encoder.beginComputePass();
+  #compute(encoder, pass, timestampWrites) {
+    const compute = encoder.beginComputePass({ timestampWrites });
     for (let time = 0; time < pass.repeat; time++) {
       for (const dispatch of pass.dispatches) {
         this.#bind(compute, dispatch);

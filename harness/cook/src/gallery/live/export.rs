@@ -7,7 +7,7 @@ use super::scenes::{LiveScene, SAMPLES, SIDE, Toggle};
 use super::slider::{Moves, Slider};
 use super::store::Store;
 use lapidary_plan::{Decisions, ladder::Ladder};
-use lapidary_render::frame::{Frame, ResourceKind};
+use lapidary_render::frame::Frame;
 use lapidary_render::{RenderError, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
@@ -227,10 +227,15 @@ fn store_frame(store: &mut Store, made: Made, moved: &BTreeSet<&str>) -> Result<
         if resource.is_left_out() {
             return Err(LiveError::LeftOut(resource.name.clone()));
         }
-        if !matches!(resource.kind, ResourceKind::Sampler { .. })
-            && let Some(bytes) = fields::contents(resource)
-        {
+        if let Some(bytes) = fields::contents(resource) {
             document["resources"][place]["contents"] = store.put(bytes)?.into();
+        }
+        // The renderer makes these once for each frame; a page writes them.
+        if is_moved(&place)
+            && let Some(usage) = document["resources"][place]["usage"].as_array_mut()
+            && !usage.iter().any(|of| of == "COPY_DST")
+        {
+            usage.push("COPY_DST".into());
         }
     }
     store.put(serde_json::to_string(&document)?.as_bytes())
@@ -303,7 +308,7 @@ impl Sliding<'_> {
         let refused = || LiveError::Structure {
             slider: self.slider.name,
             value: self.values[step],
-            what: fields::difference(&self.base.frame, &next),
+            what: fields::difference(&self.base.frame, &next).unwrap_or_else(|| "bytes outside of fields".to_owned()),
         };
         fields::changed(&self.base.frame, &next).ok_or_else(refused)
     }

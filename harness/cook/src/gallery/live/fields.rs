@@ -1,6 +1,6 @@
 //! Fields of a frame's buffers by name, and what differs between two frames.
 
-use lapidary_render::frame::{Contents, Frame, Resource, ResourceKind};
+use lapidary_render::frame::{Contents, Frame, Pipeline, Resource, ResourceKind};
 use lapidary_specialise::layout::StructLayout;
 use serde::Serialize;
 
@@ -120,7 +120,9 @@ fn word(bytes: &[u8], at: usize) -> f32 {
 /// else differs.
 #[must_use]
 pub fn changed(frame: &Frame, next: &Frame) -> Option<Vec<(Place, Vec<f32>)>> {
-    frame.changes(next)?;
+    if difference(frame, next).is_some() {
+        return None;
+    }
     let mut all = Vec::new();
     for (at, (one, other)) in frame.resources.iter().zip(&next.resources).enumerate() {
         let (Some(bytes), Some(others)) = (contents(one), contents(other)) else { continue };
@@ -173,32 +175,25 @@ fn names_field(text: &str, field: &str) -> bool {
     })
 }
 
-/// Says what of another frame differs in more than the fields of its buffers.
+/// Says what of another frame differs in more than what buffers of structs hold; `None` if nothing does.
 #[must_use]
-pub fn difference(frame: &Frame, next: &Frame) -> String {
-    let lengths = |frame: &Frame| [frame.resources.len(), frame.pipelines.len(), frame.bind_groups.len(), frame.passes.len()];
-    if lengths(frame) != lengths(next) {
-        return format!("{:?} resources, pipelines, bind groups and passes become {:?}", lengths(frame), lengths(next));
+pub fn difference(frame: &Frame, next: &Frame) -> Option<String> {
+    let counts = |frame: &Frame| (frame.resources.len(), frame.pipelines.len());
+    if counts(frame) != counts(next) {
+        return Some(format!("{:?} resources and pipelines become {:?}", counts(frame), counts(next)));
     }
-    let pairs = frame.pipelines.iter().zip(&next.pipelines);
-    let text = |pipeline: &lapidary_render::frame::Pipeline| pipeline.shader.wgsl().unwrap_or_default();
-    if let Some((one, _)) = pairs.clone().find(|(one, other)| text(one) != text(other)) {
-        return format!("the shader of `{}`", one.name);
+    let compiled = |of: &Pipeline| (of.shader.recipe().to_owned(), of.shader.entries().to_vec(), of.shader.overrides().to_vec());
+    for (one, other) in frame.pipelines.iter().zip(&next.pipelines) {
+        if one.kind != other.kind || compiled(one) != compiled(other) {
+            return Some(format!("pipeline `{}`", one.name));
+        }
     }
-    let pairs = frame.resources.iter().zip(&next.resources);
-    let differ = |(one, other): &(&Resource, &Resource)| one.bytes() != other.bytes() || (one.kind != other.kind && layout(one).is_none());
-    let names: Vec<&str> = pairs.filter(differ).map(|(one, _)| one.name.as_str()).collect();
-    if !names.is_empty() {
-        return names.join(", ");
+    let is_struct = |one: &Resource, other: &Resource| one.bytes() == other.bytes() && layout(one).is_some();
+    for (one, other) in frame.resources.iter().zip(&next.resources) {
+        if one.name != other.name || (one.kind != other.kind && !is_struct(one, other)) {
+            return Some(format!("resource `{}`", one.name));
+        }
     }
-    if frame.passes != next.passes {
-        return "passes".to_owned();
-    }
-    if frame.bind_groups != next.bind_groups {
-        return "bind groups".to_owned();
-    }
-    let fixed = |(one, other): &(&Resource, &Resource)| one.kind != other.kind && frame.changes(next).is_none();
-    let pairs = frame.resources.iter().zip(&next.resources);
-    let names: Vec<&str> = pairs.filter(fixed).map(|(one, _)| one.name.as_str()).collect();
-    if names.is_empty() { "bytes outside of fields".to_owned() } else { format!("{} cannot be written", names.join(", ")) }
+    let is_same = frame.bind_groups == next.bind_groups && frame.passes == next.passes;
+    (!is_same).then(|| "passes or bind groups".to_owned())
 }
