@@ -70,6 +70,7 @@ pub mod module;
 #[cfg(feature = "gpu")]
 pub mod mutate;
 mod near;
+mod order;
 pub mod outside;
 #[cfg(feature = "gpu")]
 pub mod property;

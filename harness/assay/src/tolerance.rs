@@ -1,7 +1,10 @@
 //! Comparison of a shader's row with the mirror's and the oracle's, within the bounds of the
 //! function's `Accuracy:` line.
 
+mod accepted;
 mod search;
+
+pub use accepted::Accepted;
 
 use crate::accuracy_line::{Bound, FieldBound};
 use crate::shape::{Leaf, Scalar, Shape};
@@ -267,31 +270,52 @@ impl Tolerance {
         }
         let mut worst: f64 = 0.0;
         for (leaf, bound) in self.floats() {
-            let range = leaf.start..leaf.start + leaf.length;
-            let (low, high) = match spread.filter(|_| bound.backward > 0.0) {
-                Some(spread) => (&spread.low[range.clone()], &spread.high[range.clone()]),
-                None => (&exact[range.clone()], &exact[range.clone()]),
-            };
-            // A vector's ulp is the ulp of its largest component; likewise its range is the range
-            // of the component that varies most.
-            let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
-            let scale = largest(low).max(largest(high));
-            let allowed = forward(bound, scale);
+            let window = Window::new(leaf, bound, exact, spread);
             let mut between: f64 = 0.0;
-            for (index, (low, high)) in range.zip(low.iter().zip(high)) {
-                let middle = 0.5 * (low + high);
-                let from_gpu = f64::from(f32::from_bits(gpu[index]));
-                let from_mirror = f64::from(f32::from_bits(mirror[index]));
+            for index in 0..leaf.length {
+                let from_gpu = f64::from(f32::from_bits(gpu[leaf.start + index]));
+                let from_mirror = f64::from(f32::from_bits(mirror[leaf.start + index]));
                 for value in [from_gpu, from_mirror] {
-                    worst = worst.max(ratio_of(((value - middle).abs() - half).max(0.0), allowed));
+                    worst = worst.max(window.ratio(index, value));
                 }
                 between = between.max((from_gpu - from_mirror).abs());
             }
             if spread.is_none_or(|spread| spread.gpu_and_mirror_agree) {
-                worst = worst.max(ratio_of(between, allowed + 2.0 * half));
+                worst = worst.max(ratio_of(between, window.allowed + 2.0 * window.half));
             }
         }
         worst
+    }
+}
+
+/// What a float part of a result may be: the oracle's range, and the error allowed beyond it.
+struct Window<'a> {
+    low: &'a [f64],
+    high: &'a [f64],
+    /// Half the range of the component that varies most. As a vector's ulp is that of its largest component, so
+    /// its range is that component's.
+    half: f64,
+    allowed: f64,
+}
+
+impl<'a> Window<'a> {
+    fn new(leaf: &Leaf, bound: &Bound, exact: &'a [f64], spread: Option<&'a Spread>) -> Self {
+        let range = leaf.start..leaf.start + leaf.length;
+        let (low, high) = match spread.filter(|_| bound.backward > 0.0) {
+            Some(spread) => (&spread.low[range.clone()], &spread.high[range]),
+            None => (&exact[range.clone()], &exact[range]),
+        };
+        let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
+        Self { low, high, half, allowed: forward(bound, largest(low).max(largest(high))) }
+    }
+
+    fn middle(&self, index: usize) -> f64 {
+        0.5 * (self.low[index] + self.high[index])
+    }
+
+    /// Returns the ratio of a component's error to the allowed error.
+    fn ratio(&self, index: usize, value: f64) -> f64 {
+        ratio_of(((value - self.middle(index)).abs() - self.half).max(0.0), self.allowed)
     }
 }
 

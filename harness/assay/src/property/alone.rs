@@ -3,7 +3,7 @@
 
 use crate::formula::{Formula, Words};
 use crate::shape::{Scalar, Shape};
-use crate::tolerance::{Tolerance, Verdict};
+use crate::tolerance::{Accepted, Tolerance, Verdict};
 
 /// Judges a result; a subnormal input may have been read as 0.
 pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32], thoroughly: bool) -> Verdict {
@@ -17,6 +17,21 @@ pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[
         .iter()
         .map(|row| of(row))
         .fold(plain, |best, next| if next.ratio < best.ratio { next } else { best })
+}
+
+/// Returns the results that hold at a row on a device that errs as far as it may: by [`Tolerance::accepted`], for the
+/// row as it is and as a flushing device may see it.
+pub fn accepted(formula: &Formula, tolerance: &Tolerance, row: &[u32]) -> Vec<Accepted> {
+    let of = |row: &[u32]| tolerance.accepted(row, &formula.exact(row), &*formula.oracle);
+    let mut all = of(row);
+    if has_subnormals(formula, row) {
+        for more in flushed(formula, row).iter().flat_map(|row| of(row)) {
+            if !all.iter().any(|known| known.covers(&more)) {
+                all.push(more);
+            }
+        }
+    }
+    all
 }
 
 /// Judges a result according to its device: against the oracle alone if the device errs as far as

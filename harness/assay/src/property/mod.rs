@@ -7,6 +7,8 @@ pub mod persistence;
 pub mod promises;
 pub mod seams;
 
+pub use alone::accepted;
+
 use crate::dispatch::{DispatchError, ROWS_PER_DISPATCH};
 use crate::formula::{Formula, Words};
 use crate::runner::Runner;

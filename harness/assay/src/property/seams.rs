@@ -13,6 +13,7 @@ use crate::draws::mix;
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Decision, Program, Site, Stopped, Traced};
 use crate::literal::{self, Language};
+use crate::order::{ordered, unordered};
 use crate::runner::Runner;
 use crate::shape::{Scalar, Shape};
 use crate::tolerance::{Tolerance, number, ulp_of};
@@ -206,16 +207,6 @@ impl Finder<'_> {
 fn step(value: f32, up: bool) -> f32 {
     let next = if up { value.next_up() } else { value.next_down() };
     if next.is_subnormal() && value == 0.0 { next.signum() * f32::MIN_POSITIVE } else { next }
-}
-
-/// Maps a float's bits to a number that grows with the float and keeps both zeros apart.
-fn ordered(bits: u32) -> u32 {
-    if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
-}
-
-/// Maps such a number back to the float's bits.
-fn unordered(number: u32) -> u32 {
-    if number >> 31 == 1 { number & 0x7fff_ffff } else { !number }
 }
 
 /// A fault of the shader next to a branch: a side exceeds its tolerance or breaks an invariant.

@@ -32,6 +32,13 @@ const STARTS: u64 = 24;
 /// Places per start that are visited first, for a case that few of them lie in.
 const PLACES_PER_START: u64 = 512;
 
+/// Places visited in a box in which the function bends, when the whole range is sought.
+const PLACES_WHERE_IT_BENDS: u64 = 4096;
+
+/// Largest distance of a linear function's result at the centre from the middle of its range, as a share of the
+/// range: roundings of the oracle, and the little by which any smooth function bends.
+const LINEAR: f64 = 1.0 / 64.0;
+
 /// Fraction of the box's half width by which the inputs are moved to either side to find the
 /// direction in which a result falls.
 const SLOPE: f64 = 1.0 / 64.0;
@@ -76,6 +83,9 @@ pub struct Search<'a> {
     /// Points of the least and the greatest value of each result, from which a search for extrema
     /// starts.
     ends: Vec<[Vec<f64>; 2]>,
+    /// Up to so many other cases that the oracle gave.
+    others: Vec<Vec<f64>>,
+    most_others: usize,
     result: Vec<f64>,
 }
 
@@ -86,14 +96,72 @@ impl<'a> Search<'a> {
             places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
         };
         let wanted = [discrete(gpu), discrete(mirror)];
+        Self::of_cases(places, wanted, gpu.len(), oracle)
+    }
+
+    /// Creates a search for one case of a result of `length` words, which remembers up to `most_others` other
+    /// cases.
+    pub fn of_case(
+        places: Vec<(usize, Scalar)>,
+        case: &[f64],
+        length: usize,
+        most_others: usize,
+        oracle: OracleFn<'a>,
+    ) -> Self {
+        Self { most_others, ..Self::of_cases(places, [case.to_vec(), case.to_vec()], length, oracle) }
+    }
+
+    fn of_cases(places: Vec<(usize, Scalar)>, wanted: [Vec<f64>; 2], length: usize, oracle: OracleFn<'a>) -> Self {
         let spread = Spread {
-            low: vec![f64::INFINITY; gpu.len()],
-            high: vec![f64::NEG_INFINITY; gpu.len()],
+            low: vec![f64::INFINITY; length],
+            high: vec![f64::NEG_INFINITY; length],
             gpu_and_mirror_agree: wanted[0] == wanted[1],
         };
-        let ends = vec![Default::default(); gpu.len()];
-        let result = Vec::with_capacity(gpu.len());
-        Self { oracle, places, wanted, met: [false; 2], spread, ends, result }
+        let (ends, result) = (vec![Default::default(); length], Vec::with_capacity(length));
+        Self { oracle, places, wanted, met: [false; 2], spread, ends, others: Vec::new(), most_others: 0, result }
+    }
+
+    /// Returns the other cases that the oracle gave.
+    pub fn others(&self) -> &[Vec<f64>] {
+        &self.others
+    }
+
+    /// Searches for the whole range, without a result to reach: the corners, the places at which the case changes if
+    /// there are cases, and from the best of them the extrema of the results at `floats`. `centre` is the oracle's
+    /// result at the centre. Where the function bends within the box, many places inside it are visited as well.
+    pub fn look_everywhere(&mut self, inputs: &InputBox, floats: &[usize], centre: &[f64]) {
+        let effort = if self.places.is_empty() { Effort::Corners } else { Effort::Boundaries };
+        self.corners(effort, inputs, |_| false);
+        self.descend_from_ends(inputs, floats);
+        if self.bends(floats, centre) {
+            self.corners(Effort::Boundaries, inputs, |_| false);
+            for number in 0..PLACES_WHERE_IT_BENDS {
+                self.visit(&inputs.place(number));
+            }
+            self.descend_from_ends(inputs, floats);
+        }
+    }
+
+    /// Searches for the least and the greatest of each of these results, from the best places so far.
+    fn descend_from_ends(&mut self, inputs: &InputBox, floats: &[usize]) {
+        if self.spread().is_none() {
+            return;
+        }
+        for index in floats {
+            for (end, sign) in [(0, 1.0), (1, -1.0)] {
+                let best = self.ends[*index][end].clone();
+                self.descend(inputs, best, (*index, sign), &|_| false);
+            }
+        }
+    }
+
+    /// Whether the result at the centre lies beside the middle of the range, where a linear function has it.
+    fn bends(&self, floats: &[usize], centre: &[f64]) -> bool {
+        floats.iter().any(|index| {
+            let (low, high) = (self.spread.low[*index], self.spread.high[*index]);
+            // Written so that a range that is not found bends.
+            !((centre[*index] - 0.5 * (low + high)).abs() <= LINEAR * (high - low))
+        })
     }
 
     /// Returns the range found so far, or `None` if the oracle did not give both cases.
@@ -145,6 +213,8 @@ impl<'a> Search<'a> {
                 let ends = [below, above].into_iter().zip(&mut self.ends[index]);
                 ends.filter(|(is_new, _)| *is_new).for_each(|(_, end)| point.clone_into(end));
             }
+        } else if self.others.len() < self.most_others && !self.others.contains(&found) {
+            self.others.push(found.clone());
         }
         Some(found)
     }

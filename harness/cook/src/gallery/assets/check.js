@@ -11,8 +11,6 @@
   /** The device is gone; a new one may do. */
   class Lost extends Error {}
 
-  // Numbers
-
   const word = new Uint32Array(1);
   const float = new Float32Array(word.buffer);
   const int = new Int32Array(word.buffer);
@@ -59,8 +57,6 @@
   };
 
   const listed = (texts) => (texts.length === 1 ? texts[0] : `(${texts.join(', ')})`);
-
-  // The rows of a function
 
   async function inflated(base64) {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -122,15 +118,12 @@
     return { ...data, kinds, inputs, cases, exact, ends };
   }
 
-  // The judgement
-
   /** How far a number lies from the expected one, as a share of how far it may; it holds up to 1. */
   function share(kind, value, exact, low, high) {
     const holds = value >= low && value <= high;
     if (kind !== 'f32') return holds ? 0 : Infinity;
     if (holds && value === exact) return 0;
-    const reach = value < exact ? exact - low : high - exact;
-    const ratio = Math.abs(value - exact) / Math.max(reach, 0);
+    const ratio = Math.abs(value - exact) / Math.max(value < exact ? exact - low : high - exact, 0);
     if (holds) return Math.min(ratio, 1);
     return Number.isFinite(value) ? Math.max(ratio, 1 + Number.EPSILON) : Infinity;
   }
@@ -139,14 +132,16 @@
   function judge(rows, results) {
     let [held, at, worst] = [0, 0, null];
     for (let row = 0; row < rows.count; row++) {
-      // The result of a right function may be any of several; the nearest counts.
+      // Any of the cases may hold; the first is the oracle's own, and in another the expected result says nothing.
+      const first = at;
       let [ratio, entry] = [Infinity, at];
       for (const end = at + rows.cases[row]; at < end; at++) {
         const shares = rows.kinds.map((kind, index) => {
           const { low, high } = rows.ends[index];
           return share(kind, results[row][index], rows.exact[index].numbers[row], low[at], high[at]);
         });
-        if (Math.max(...shares) < ratio) [ratio, entry] = [Math.max(...shares), at];
+        const largest = Math.max(...shares);
+        if (largest < ratio && ratio > 1) [ratio, entry] = [at > first && largest <= 1 ? 0 : largest, at];
       }
       if (ratio <= 1) held++;
       if (!worst || ratio > worst.ratio) worst = { row, ratio, entry };
@@ -185,14 +180,17 @@
     const found = { name: part.path, expected: texts(exact), got: texts(got), bound: part.bound };
     const ends = low.map((least, index) => ({ least, greatest: high[index] }));
     const holds = ends.every(({ least, greatest }, index) => got[index] >= least && got[index] <= greatest);
-    if (part.kind !== 'f32') return { ...found, holds, error: same ? 'none' : 'another value', allowed: texts(low) };
+    const other = holds ? 'none: beside a threshold either holds' : 'another value';
+    if (part.kind !== 'f32') return { ...found, holds, error: same ? 'none' : other, allowed: texts(low) };
+    const elsewhere = holds && ends.some(({ least, greatest }, index) => exact[index] < least || exact[index] > greatest);
+    if (elsewhere) return { ...found, holds, error: 'none in this case', allowed: spanned(ends) };
     const error = Math.max(...got.map((value, index) => Math.abs(value - exact[index])));
-    const allowed = listed(ends.map(({ least, greatest }) => `${brief(least)} … ${brief(greatest)}`));
     const scale = Math.max(...exact.map(Math.abs));
-    return { ...found, holds, error: inWords(error, scale, part.bound, got), allowed };
+    return { ...found, holds, error: inWords(error, scale, part.bound, got), allowed: spanned(ends) };
   }
 
   const brief = (value) => String(Number(value.toPrecision(9)));
+  const spanned = (ends) => listed(ends.map(({ least, greatest }) => `${brief(least)} … ${brief(greatest)}`));
 
   /** An error in the units of its bound. */
   function inWords(error, scale, bound, got) {
@@ -210,8 +208,6 @@
     const edge = row - (count - edges.length);
     return edge >= 0 ? `edge: ${edges[edge]}` : `input ${row - hard.length}`;
   }
-
-  // The GPU
 
   let known = null;
 

@@ -149,7 +149,13 @@
     }
 
     fail(error) {
-      this.result.replaceChildren(made('p', 'check-fails', error.message || String(error)));
+      this.tell(made('p', 'check-fails', error.message || String(error)));
+    }
+
+    /** Shows a result, whose first line is also said. */
+    tell(...parts) {
+      this.result.replaceChildren(...parts);
+      gallery.say(parts[0].textContent);
     }
 
     report(name, { rows, held, worst, messages, adapter }) {
@@ -157,13 +163,13 @@
       this.number([...new Set(errors.map(({ line }) => line).filter(Boolean))]);
       const said = messages.length > 0 ? [this.listed(messages)] : [];
       if (!worst) {
-        this.result.replaceChildren(made('p', 'check-fails', 'It does not compile; your browser says:'), ...said);
+        this.tell(made('p', 'check-fails', 'It does not compile; your browser says:'), ...said);
         return;
       }
       const all = held === rows;
       const head = made('p', all ? 'check-holds' : 'check-fails');
       head.append(`${all ? 'All' : held} ${all ? '' : 'of '}${rows} rows hold`, ` for ${name} on ${adapter}.`);
-      this.result.replaceChildren(head, ...said, this.worst(worst));
+      this.tell(head, ...said, this.worst(worst));
     }
 
     /** The compiler's messages; each leads to its line. */
