@@ -32,7 +32,8 @@ impl Record {
                 let words: Vec<String> = params["args"].as_array().into_iter().flatten().map(shown).collect();
                 self.problems.push(format!("console.error: {}", words.join(" ")));
             }
-            "Log.entryAdded" if params["entry"]["level"] == "error" => {
+            // Failed requests are noted below.
+            "Log.entryAdded" if params["entry"]["level"] == "error" && params["entry"]["source"] != "network" => {
                 let entry = &params["entry"];
                 self.problems.push(format!("logged: {} ({})", text(&entry["text"]), text(&entry["url"])));
             }

@@ -27,6 +27,9 @@ mod formulas;
 
 mod frame;
 mod furnace;
+mod gallery_live;
+mod gallery_pages;
+mod gallery_rows;
 mod gem;
 mod generated;
 mod hard_cases;

@@ -1,0 +1,172 @@
+//! Sliders, rungs, effects, the eye and the address.
+
+use super::{begin, differing, names, running, set, shown};
+use crate::gallery_pages::browser::SOON;
+use lapidary_cook::gallery::live::{SCENES, SIDE};
+use serde_json::json;
+
+/// The least share of pixels that a control must change.
+const LEAST: f64 = 0.001;
+
+/// Unless the suite is run whole, one scene; always the first.
+fn some_scenes() -> Vec<&'static str> {
+    let all = SCENES.iter().map(|live| live.scene);
+    if crate::whole() { all.collect() } else { all.take(1).collect() }
+}
+
+/// By its own input, as a visitor moves it.
+#[test]
+fn every_slider_changes_the_picture() {
+    for scene in some_scenes() {
+        let Some(mut page) = running(scene, "") else { return };
+        let before = shown(&mut page);
+        for name in names(&mut page, "sliders") {
+            for end in ["0", "input.max"] {
+                let moved = format!(
+                    "const input = document.querySelector('.live [name=\"{name}\"]');
+                    input.value = {end};
+                    input.dispatchEvent(new Event('input', {{ bubbles: true }}));
+                    await gallery.live.set({{}});
+                    return document.querySelector('[data-slider=\"{name}\"] output').textContent;"
+                );
+                let text = page.run(&moved).expect("moved");
+                let share = differing(&before, &shown(&mut page));
+                println!("{scene} {name} {text}: {share:.4}");
+                assert!(share > LEAST, "{scene}: {name} at {text} changes {share} of the picture");
+            }
+            page.click(&format!("[data-slider=\"{name}\"] [data-reset]")).expect("a button");
+            page.run("await gallery.live.set({});").expect("drawn");
+            assert_eq!(differing(&before, &shown(&mut page)), 0.0, "{scene}: {name} back at its start");
+        }
+        assert_eq!(page.problems().expect("a list"), [] as [String; 0], "{scene}");
+    }
+}
+
+/// Left of the wipe is one rung, right of it the other.
+#[test]
+fn a_wipe_stands_between_two_rungs() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    let one = shown(&mut page);
+    let rung = page.evaluate("gallery.live.state.rung").expect("a state");
+    set(&mut page, "state.rung = 'proxy-4+tracker'");
+    let other = shown(&mut page);
+    assert!(differing(&one, &other) > 0.05, "two rungs look the same");
+    set(&mut page, &format!("state.rung = {rung}; state.other = 'proxy-4+tracker'; state.wipe = 25"));
+    let both = shown(&mut page);
+    let side = SIDE as usize;
+    let split = side / 4;
+    for (row, pixels) in both.chunks_exact(4 * side).enumerate() {
+        let at = |from: usize, to: usize| 4 * (row * side + from)..4 * (row * side + to);
+        assert_eq!(pixels[..4 * split], one[at(0, split)], "row {row}, left");
+        assert_eq!(pixels[4 * split..], other[at(split, side)], "row {row}, right");
+    }
+}
+
+/// An effect is another shader, which the copied text shows, and it compiles.
+#[test]
+fn an_effect_is_another_shader() {
+    for scene in some_scenes() {
+        let Some(mut page) = running(scene, "") else { return };
+        page.grant_clipboard().expect("granted");
+        let mut copied = |page: &mut lapidary_browser::Page| {
+            page.run("await navigator.clipboard.writeText('')").expect("emptied");
+            page.click("[data-do=shader]").expect("a button");
+            let text = page.wait_for("navigator.clipboard.readText()", SOON).expect("a text");
+            text.as_str().expect("a text").to_owned()
+        };
+        let before = copied(&mut page);
+        lapidary_specialise::parse(&before, "the shader").unwrap_or_else(|error| panic!("{scene}: {error}"));
+        let of_rung = page.evaluate("gallery.live.manifest.rungs[gallery.live.state.rung].toggles").expect("names");
+        let toggles = of_rung.as_array().expect("names").clone();
+        assert!(!toggles.is_empty(), "{scene}");
+        let picture = shown(&mut page);
+        for name in toggles.iter().filter_map(|name| name.as_str()) {
+            page.click(&format!(".live [name=\"{name}\"]")).expect("a box");
+            page.run("await gallery.live.set({});").expect("drawn");
+            let after = copied(&mut page);
+            lapidary_specialise::parse(&after, "the shader").unwrap_or_else(|error| panic!("{scene} {name}: {error}"));
+            let share = differing(&picture, &shown(&mut page));
+            println!("{scene} {name}: {} bytes, {} before; {share:.4} of the picture", after.len(), before.len());
+            assert_ne!(before, after, "{scene}: {name} leaves the shader as it was");
+            assert!(share > LEAST, "{scene}: {name} changes {share} of the picture");
+            page.click(&format!(".live [name=\"{name}\"]")).expect("a box");
+            page.run("await gallery.live.set({});").expect("drawn");
+        }
+        assert_eq!(differing(&picture, &shown(&mut page)), 0.0, "{scene}");
+    }
+}
+
+/// What a visitor sees can be sent to another.
+#[test]
+fn the_address_holds_the_state() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    assert_eq!(page.evaluate("location.hash").expect("an address"), "");
+    set(
+        &mut page,
+        "Object.assign(state, { other: 'surface', wipe: 70, polar: 55, azimuth: -30 });
+        state.steps.index = 3; state.steps.exposure = 20; state.on.dispersion = false",
+    );
+    let (hash, state) = (page.evaluate("location.hash").expect("a hash"), page.evaluate("gallery.live.state").expect("a state"));
+    let picture = shown(&mut page);
+    let hash = hash.as_str().expect("a text").trim_start_matches('#').to_owned();
+    for word in ["index=", "other=surface", "wipe=70", "view=55", "dispersion=off"] {
+        assert!(hash.contains(word), "{word}: {hash}");
+    }
+    begin(&mut page, "brilliant", &hash);
+    page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("started");
+    page.evaluate("gallery.live.ready").expect("drawn");
+    assert_eq!(page.evaluate("gallery.live.state").expect("a state"), state);
+    assert_eq!(differing(&picture, &shown(&mut page)), 0.0);
+    // Back to the start, the address is empty again.
+    page.click("[data-do=start]").expect("a button");
+    page.wait_for("location.hash === ''", SOON).expect("an empty fragment");
+    // What makes no sense is left out.
+    begin(&mut page, "brilliant", "rung=none&index=x&view=1,2&wipe=1e9&nothing");
+    page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("started");
+    let wipe = page.evaluate("gallery.live.state.wipe").expect("a state");
+    assert_eq!(wipe, 100);
+    assert_eq!(page.evaluate("gallery.live.state.rung === Object.keys(gallery.live.manifest.rungs)[0]").expect("a state"), true);
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// By keys, by the mouse, and by the wheel.
+#[test]
+fn the_eye_is_moved() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    let before = shown(&mut page);
+    let state = "(({ polar, azimuth, distance }) => [polar, azimuth, distance])(gallery.live.state)";
+    let start = page.evaluate(state).expect("a state");
+    page.evaluate("document.querySelector('.live canvas').focus()").expect("the focus");
+    page.press("ArrowRight").expect("pressed");
+    page.press("ArrowUp").expect("pressed");
+    page.press("+").expect("pressed");
+    page.run("await gallery.live.set({});").expect("drawn");
+    let by_keys = page.evaluate(state).expect("a state");
+    for part in 0..3 {
+        assert_ne!(start[part], by_keys[part], "part {part}: {start} {by_keys}");
+    }
+    assert!(differing(&before, &shown(&mut page)) > 0.01);
+    let middle = page
+        .evaluate("(() => { const box = document.querySelector('.live canvas').getBoundingClientRect(); return [box.left + box.width / 2, box.top + box.height / 2]; })()")
+        .expect("a box");
+    let [x, y] = [0, 1].map(|part| middle[part].as_f64().expect("a number"));
+    page.drag([x, y], [x + 50.0, y]).expect("dragged");
+    page.run("await gallery.live.set({});").expect("drawn");
+    let by_mouse = page.evaluate(state).expect("a state");
+    assert_ne!(by_keys[1], by_mouse[1]);
+    let wheel = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": 100 });
+    page.call("Input.dispatchMouseEvent", wheel).expect("turned");
+    page.wait_for(&format!("gallery.live.state.distance !== {}", by_mouse[2]), SOON).expect("further away");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// The time is the visitor's own, and stands in the plot.
+#[test]
+fn a_measured_time_is_drawn_into_the_plot() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    page.click("[data-do=time]").expect("a button");
+    let text = page.wait_for("document.querySelector('.live-time').textContent", super::DRAWN).expect("a time");
+    assert!(text.as_str().is_some_and(|text| text.contains(" ms on your GPU")), "{text}");
+    page.wait_for("document.querySelectorAll('svg.plot .visitor').length > 0", SOON).expect("a point in the plot");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}

@@ -1,0 +1,328 @@
+//! The gallery's pages: what they refer to, what they weigh, and how they behave for a reader with
+//! Chromium and a keyboard. The site is built once for all these tests.
+//!
+//! Without Chromium, the tests in it say so and pass. With `LAPIDARY_CHROMIUM=required`, as in
+//! `.ci/run`, they fail.
+
+pub(crate) mod browser;
+mod html;
+mod keyboard;
+pub(crate) mod site;
+
+use browser::opened;
+use html::Piece;
+use site::{Site, SitePage, files, resolved, site};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Most bytes of a page without its pictures: HTML, styles, scripts and fonts.
+const MOST_PAGE: u64 = 500_000;
+/// Most bytes before a page's first paint: HTML, styles, scripts that it waits for, fonts asked for at once.
+const MOST_FIRST: u64 = 300_000;
+/// Most bytes of the site.
+const MOST_SITE: u64 = 30_000_000;
+/// Unless the suite is run whole, one page in this many is opened.
+const ONE_IN: u64 = 12;
+
+/// Attributes with an address.
+const ADDRESSES: [&str; 4] = ["href", "src", "data-src", "poster"];
+
+/// An address in a page or a style.
+struct Link<'a> {
+    /// Where it stands.
+    from: &'a str,
+    address: String,
+    /// Whether the reader goes there, rather than the browser by itself.
+    followed: bool,
+}
+
+fn links<'a>(site: &'a Site) -> Vec<Link<'a>> {
+    let mut links = Vec::new();
+    for (from, page) in &site.pages {
+        for piece in &page.pieces {
+            let Piece::Start(name, attributes) = piece else { continue };
+            let found = ADDRESSES.iter().filter_map(|key| attributes.get(*key).cloned());
+            let set = attributes.get("srcset").into_iter().flat_map(|set| set.split(','));
+            let set = set.map(|of| of.split_whitespace().next().unwrap_or_default().to_owned());
+            links.extend(found.chain(set).map(|address| Link { from, address, followed: name == "a" }));
+        }
+    }
+    links
+}
+
+/// The addresses in a stylesheet.
+fn in_style(text: &str) -> Vec<String> {
+    let parts = text.split("url(").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0));
+    parts.map(|address| address.trim().trim_matches(['"', '\'']).to_owned()).collect()
+}
+
+/// Whether a page has what the part after `#` names. A part with `=` is a state, which a script reads.
+fn has_anchor(page: &SitePage, address: &str) -> bool {
+    let Some((_, anchor)) = address.split_once('#') else { return true };
+    anchor.is_empty() || anchor == "top" || anchor.contains('=') || page.ids.contains(anchor)
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let site = site();
+    let all: BTreeSet<String> = files(&site.folder).into_iter().collect();
+    let mut wrong = Vec::new();
+    let links = links(site);
+    assert!(links.len() > 1000, "{}", links.len());
+    for Link { from, address, followed } in &links {
+        let fine = match resolved(from, address) {
+            Some(path) => all.contains(&path) && site.pages.get(&path).is_none_or(|page| has_anchor(page, address)),
+            // The reader may leave the site; the browser fetches nothing from elsewhere.
+            None => *followed && address.starts_with("https://") || address.starts_with("data:"),
+        };
+        if !fine {
+            wrong.push(format!("{from}: {address}"));
+        }
+    }
+    for style in all.iter().filter(|path| path.starts_with("assets/") && path.ends_with(".css")) {
+        let text = std::fs::read_to_string(site.folder.join(style)).expect("a stylesheet");
+        let lost = |address: &String| {
+            !address.starts_with("data:")
+                && !address.starts_with('#')
+                && resolved(style, address).is_none_or(|path| !all.contains(&path))
+        };
+        wrong.extend(in_style(&text).into_iter().filter(lost).map(|address| format!("{style}: {address}")));
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{} links lead nowhere:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn an_anchor_is_an_id() {
+    let page = SitePage { bytes: 0, pieces: Vec::new(), ids: BTreeSet::from(["here".to_owned()]) };
+    let cases = [("a.html", true), ("a.html#here", true), ("#there", false), ("#ior=2.4", true)];
+    for (address, expected) in cases {
+        assert_eq!(has_anchor(&page, address), expected, "{address}");
+    }
+    assert_eq!(in_style("@font-face { src: url(\"a.woff2\") } b { mask: url( c.svg ) }"), ["a.woff2", "c.svg"]);
+}
+
+/// Every page can be reached from the start page.
+#[test]
+fn every_page_is_linked() {
+    let site = site();
+    let mut to: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for Link { from, address, followed } in links(site) {
+        if followed {
+            to.entry(from).or_default().extend(resolved(from, &address));
+        }
+    }
+    let mut reached: BTreeSet<String> = BTreeSet::new();
+    let mut open = vec!["index.html".to_owned()];
+    while let Some(path) = open.pop() {
+        if reached.insert(path.clone()) {
+            open.extend(to.get(path.as_str()).into_iter().flatten().cloned());
+        }
+    }
+    let lost: Vec<&String> = site.pages.keys().filter(|path| !reached.contains(*path)).collect();
+    assert!(lost.is_empty(), "{lost:?}");
+}
+
+/// Bytes of a page without its pictures, and of what comes before its first paint.
+fn weight(site: &Site, path: &str, page: &SitePage) -> [u64; 2] {
+    let (mut all, mut first) = (page.bytes, page.bytes);
+    for piece in &page.pieces {
+        let Piece::Start(name, attributes) = piece else { continue };
+        let of = |key: &str| attributes.get(key).map(String::as_str);
+        let waits = match (name.as_str(), of("rel")) {
+            ("script", _) => of("defer").is_none() && of("async").is_none() && of("type") != Some("module"),
+            ("link", Some("stylesheet" | "preload")) => true,
+            _ => continue,
+        };
+        let address = if name == "script" { of("src") } else { of("href") };
+        let Some(file) = address.and_then(|address| resolved(path, address)) else { continue };
+        let bytes = site.bytes(&file);
+        all += bytes;
+        if waits {
+            first += bytes;
+        }
+        if file.ends_with(".css") {
+            let text = std::fs::read_to_string(site.folder.join(&file)).expect("a stylesheet");
+            let fonts = in_style(&text).into_iter().filter_map(|address| resolved(&file, &address));
+            all += fonts.map(|font| site.bytes(&font)).sum::<u64>();
+        }
+    }
+    [all, first]
+}
+
+#[test]
+fn pages_are_light() {
+    let site = site();
+    assert!(site.pages.len() > 50, "{}", site.pages.len());
+    let mut wrong = Vec::new();
+    let mut most = [(0, ""); 2];
+    for (path, page) in &site.pages {
+        let bytes = weight(site, path, page);
+        for (place, (bytes, bound)) in bytes.into_iter().zip([MOST_PAGE, MOST_FIRST]).enumerate() {
+            most[place] = most[place].max((bytes, path));
+            if bytes > bound {
+                wrong.push(format!("{path}: {bytes} bytes {}", ["in all", "before its first paint"][place]));
+            }
+        }
+    }
+    let whole = site.all_bytes();
+    println!("{} pages, {whole} bytes; heaviest {most:?}", site.pages.len());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(whole <= MOST_SITE, "{whole} bytes");
+}
+
+/// A page tells what it is: a title of its own, a language, one heading of the first level, a main part,
+/// and words in place of every picture.
+#[test]
+fn pages_say_what_they_are() {
+    let mut titles = BTreeSet::new();
+    for (path, page) in &site().pages {
+        let mut count: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut title = None;
+        for (at, piece) in page.pieces.iter().enumerate() {
+            let Piece::Start(name, attributes) = piece else { continue };
+            *count.entry(name).or_default() += 1;
+            match (name.as_str(), page.pieces.get(at + 1)) {
+                ("title", Some(Piece::Text(text))) => title = title.or_else(|| Some(text.clone())),
+                ("html", _) => assert_eq!(attributes.get("lang").map(String::as_str), Some("en"), "{path}"),
+                ("img", _) => {
+                    let has = |key: &&str| !attributes.contains_key(*key);
+                    let missing: Vec<&str> = ["alt", "width", "height"].into_iter().filter(has).collect();
+                    assert!(missing.is_empty(), "{path}: an image without {missing:?}: {attributes:?}");
+                }
+                _ => {}
+            }
+        }
+        for name in ["h1", "main"] {
+            assert_eq!(count.get(name), Some(&1), "{path}: {name}");
+        }
+        let title = title.unwrap_or_else(|| panic!("{path}: no title"));
+        assert!(titles.insert(title.clone()), "{path}: another page is called {title} too");
+    }
+}
+
+/// Texts of WGSL with a button that copies them, by their file's name.
+fn listings(page: &SitePage) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let class = |attributes: &BTreeMap<String, String>, wanted: &str| {
+        attributes.get("class").is_some_and(|names| names.split_whitespace().any(|name| name == wanted))
+    };
+    let mut pieces = page.pieces.iter().peekable();
+    let mut file = String::new();
+    while let Some(piece) = pieces.next() {
+        let Piece::Start(name, attributes) = piece else { continue };
+        if class(attributes, "file") {
+            if let Some(Piece::Text(text)) = pieces.peek() {
+                file.clone_from(text);
+            }
+        } else if name == "pre" && file.ends_with(".wgsl") {
+            let mut text = String::new();
+            for piece in pieces.by_ref() {
+                match piece {
+                    Piece::Text(more) => text.push_str(more),
+                    Piece::End(name) if name == "pre" => break,
+                    _ => {}
+                }
+            }
+            found.push((std::mem::take(&mut file), text));
+        }
+    }
+    found
+}
+
+/// What a copy button puts into the clipboard is complete WGSL; a test below holds the clipboard to the page.
+#[test]
+fn copied_listings_compile() {
+    let mut count = 0;
+    for (path, page) in &site().pages {
+        for (file, text) in listings(page) {
+            let text = text.strip_prefix('\n').unwrap_or(&text);
+            if let Err(error) = lapidary_specialise::parse(text, &file) {
+                panic!("{path}: {file}: {error}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count >= lapidary_cook::cookbook::modules().len(), "{count} listings");
+}
+
+/// A handful of pages: one of each folder, and some more by the suite's seed.
+fn some_pages() -> Vec<&'static str> {
+    let site = site();
+    let mut chosen: BTreeSet<&str> = BTreeSet::from(["index.html"]);
+    for folder in ["guides/", "live/", "modules/", "recipes/", "techniques/"] {
+        chosen.insert(site.first(folder));
+    }
+    chosen.extend(crate::sampled(site.pages.keys().map(String::as_str), ONE_IN));
+    chosen.into_iter().collect()
+}
+
+/// From a file: no error is told, nothing is fetched from outside the folder, and on a phone nothing is
+/// wider than the page.
+#[test]
+fn pages_are_quiet_and_fit_a_phone() {
+    let Some(mut page) = browser::started() else { return };
+    let site = site();
+    let home = site.address("");
+    let mut wrong = Vec::new();
+    for path in some_pages() {
+        page.set_viewport(390, 844, true).expect("set");
+        page.set_media(path.len() % 2 == 0, true).expect("set");
+        page.open(&site.address(path)).expect(path);
+        // Down to its end, so that lazy pictures come too.
+        page.run(browser::SCROLL).expect(path);
+        let wide = page.evaluate(browser::WIDER).expect(path);
+        if wide != serde_json::json!([]) {
+            wrong.push(format!("{path}: wider than 390 pixels: {wide}"));
+        }
+        let broken = page.evaluate(browser::BROKEN).expect(path);
+        if broken != serde_json::json!([]) {
+            wrong.push(format!("{path}: pictures that are none: {broken}"));
+        }
+        wrong.extend(page.problems().expect(path).iter().map(|problem| format!("{path}: {problem}")));
+        let outside = |address: &&String| !(address.starts_with(&home) || address.starts_with("data:") || address.starts_with("blob:"));
+        wrong.extend(page.requests().expect(path).iter().filter(outside).map(|address| format!("{path} asks for {address}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The button's text is what the page shows, to the letter.
+#[test]
+fn a_copy_button_copies_what_is_shown() {
+    let Some(mut page) = opened("modules/refraction.html") else { return };
+    page.grant_clipboard().expect("granted");
+    let file = "refraction.wgsl";
+    let (_, shown) = listings(&site().pages["modules/refraction.html"])
+        .into_iter()
+        .find(|(name, _)| name.ends_with(file))
+        .expect("a listing");
+    page.run(
+        "const source = [...document.querySelectorAll('.copyable')]
+            .find((part) => part.querySelector('.file')?.textContent.endsWith('refraction.wgsl'));
+        source.querySelector('button.copy').id = 'the-button';",
+    )
+    .expect("the listing's button");
+    page.click("#the-button").expect("clicked");
+    let copied = page
+        .wait_for("navigator.clipboard.readText()", browser::SOON)
+        .expect("a clipboard");
+    let copied = copied.as_str().expect("a text");
+    assert_eq!(copied.trim_end(), shown.trim());
+    // It says so, to eyes and to screen readers.
+    let said = page.wait_for("document.querySelector('#status').textContent", browser::SOON).expect("words");
+    assert!(said.as_str().is_some_and(|said| said.to_lowercase().contains("cop")), "{said}");
+    // Each command of the page is copied whole.
+    let commands = page
+        .run(
+            "const wrong = [];
+            for (const part of document.querySelectorAll('.command.copyable')) {
+              part.querySelector('button.copy').click();
+              await new Promise((done) => setTimeout(done, 50));
+              const copied = await navigator.clipboard.readText();
+              const shown = part.querySelector('code').textContent;
+              if (copied.trim() !== shown.trim()) wrong.push([shown, copied]);
+            }
+            return wrong;",
+        )
+        .expect("copied");
+    assert_eq!(commands, serde_json::json!([]));
+}
