@@ -54,7 +54,7 @@ pub const PLACES: [f64; 2] = [1.083, -1.083];
 
 fn draw() -> Scene {
     let mut scene = Scene::new(720, 430);
-    let view = Section::new(350.0, 226.0, 138.0);
+    let view = Section::new(360.0, 226.0, 138.0);
     let curve: Vec<DVec2> = (-100..=100).map(|k| place(f64::from(k) * 0.0253)).collect();
     let mut body = curve.clone();
     body.extend([at(2.53, -1.48), at(-2.53, -1.48)]);

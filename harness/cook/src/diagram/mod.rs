@@ -12,6 +12,8 @@ mod closest_point;
 mod convex_trace;
 mod convex_walk;
 mod curvature;
+mod dispersion;
+mod half_space;
 mod optical_path;
 mod proxy_geometry;
 mod ray_footprint;
@@ -20,9 +22,11 @@ mod refraction;
 mod screen_trace;
 mod voxelization;
 
-use crate::gallery::templates::{self, Markup};
+use minijinja::value::{Serde, Value};
+use minijinja::{Environment, UndefinedBehavior, syntax::SyntaxConfig};
 use scene::Scene;
 use serde::Serialize;
+use std::sync::LazyLock;
 
 /// A diagram of a technique.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +51,7 @@ pub fn all() -> &'static [Diagram] {
 
 const ALL: &[Diagram] = &[
     refraction::DIAGRAM,
+    dispersion::DIAGRAM,
     closest_point::DIAGRAM,
     proxy_geometry::DIAGRAM,
     convex_trace::DIAGRAM,
@@ -55,6 +60,7 @@ const ALL: &[Diagram] = &[
     reflective_shadow_map::DIAGRAM,
     voxelization::DIAGRAM,
     optical_path::DIAGRAM,
+    half_space::DIAGRAM,
     curvature::DIAGRAM,
     screen_trace::DIAGRAM,
     ray_footprint::DIAGRAM,
@@ -65,35 +71,53 @@ const STYLE: &str = include_str!("../gallery/assets/diagram.css");
 /// The colours of a file of its own, light and dark.
 const COLOURS: &str = include_str!("../gallery/assets/diagram_colours.css");
 
+/// The template's name; its ending makes text in it escaped.
+const TEMPLATE: &str = "diagram.xml";
+
+/// The template, apart from the gallery's, which needs this module.
+static TEMPLATES: LazyLock<Environment<'static>> = LazyLock::new(|| {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_syntax(syntax.unwrap_or_else(|error| panic!("the default delimiters: {error:#}")));
+    let text = include_str!("../gallery/templates/diagram.xml");
+    environment.add_template(TEMPLATE, text).unwrap_or_else(|error| panic!("{TEMPLATE}: {error:#}"));
+    environment
+});
+
 /// What the template takes.
 #[derive(Serialize)]
 struct Sheet<'a> {
     name: &'a str,
     title: &'a str,
     description: String,
-    style: Option<Markup>,
+    style: Option<Value>,
     scene: Scene,
 }
 
 impl Diagram {
     /// Returns the diagram as a file of its own, which carries its colours for light and dark grounds.
+    #[must_use]
     pub fn file_text(&self) -> String {
-        self.render(Some(Markup(format!("{}\n{}", COLOURS.trim_end(), STYLE.trim_end())))).0
+        self.render(Some(format!("{}\n{}", COLOURS.trim_end(), STYLE.trim_end())))
     }
 
-    /// Returns the diagram for a page, whose style sheet colours it.
-    pub fn inline(&self) -> Markup {
+    /// Returns the diagram as markup for a page, whose style sheet colours it.
+    #[must_use]
+    pub fn inline(&self) -> String {
         self.render(None)
     }
 
-    fn render(&self, style: Option<Markup>) -> Markup {
+    fn render(&self, style: Option<String>) -> String {
         let description = self.caption.replace('`', "");
         let (name, title, scene) = (self.name, self.title, (self.draw)());
-        let Markup(mut text) = templates::render("diagram.xml", Sheet { name, title, description, style, scene });
+        let sheet = Sheet { name, title, description, style: style.map(Value::from_safe_string), scene };
+        let text = TEMPLATES.get_template(TEMPLATE).and_then(|template| template.render(Serde(sheet)));
+        let mut text = text.unwrap_or_else(|error| panic!("{TEMPLATE}: {error:#}"));
         if !text.ends_with('\n') {
             text.push('\n');
         }
-        Markup(text)
+        text
     }
 }
 

@@ -22,7 +22,7 @@ pub const SIZE: u32 = 18;
 /// A circle of the section: its middle and its radius.
 pub type Body = (DVec2, f64);
 /// A large body and a small one before it.
-pub const BODIES: [Body; 2] = [(at(0.85, -1.3), 1.72), (at(-0.35, 0.98), 0.26)];
+pub const BODIES: [Body; 2] = [(at(0.85, -1.3), 1.72), (at(-0.32, 0.98), 0.38)];
 /// The lamp.
 pub const LAMP: DVec2 = at(-2.35, 1.95);
 
@@ -151,14 +151,14 @@ fn shadow(scene: &mut Scene, sheet: &Section) {
     let (point, normal, seen) = shadowed();
     let Some(seen) = seen else { return };
     let along = normal.perp();
-    scene.line(&sheet.all(&[point - 1.5 * along, point + 1.1 * along]), DIM.thin().dashed());
+    scene.line(&sheet.all(&[point - 1.5 * along, point + 1.56 * along]), DIM.thin().dashed());
     let above = f64::from(height(space(seen.place), space(point), space(normal)));
     let foot = seen.place - above * normal;
     scene.line(&sheet.all(&[foot, seen.place]), WARM).named("height");
     scene.line(&sheet.all(&[seen.place, point]), WARM.thin().dashed());
     scene.dot(sheet.at(point), 6.0, Paint::Warm).named("shadowed");
     scene.symbol(sheet.at(point) + at(6.0, 24.0), Anchor::Middle, Paint::Warm, "'p");
-    scene.symbol(sheet.at(seen.place) + at(26.0, -40.0), Anchor::Middle, Paint::Second, "'x");
+    scene.symbol(sheet.at(seen.place) + at(30.0, -10.0), Anchor::Middle, Paint::Second, "'x");
     let formula = "$('x − 'p)·'n_p$ > $b$: shadow";
     scene.note(sheet.at(BODIES[0].0) + at(0.0, -86.0), Anchor::Middle, Paint::Warm, formula);
 }

@@ -41,7 +41,7 @@ fn a_file_carries_its_colours_and_a_page_does_not() {
     let file = diagram.file_text();
     assert!(file.contains("prefers-color-scheme: dark") && file.contains("role=\"img\""), "{file}");
     assert!(file.contains("<title id=") && file.contains("<desc id="), "{file}");
-    let inline = diagram.inline().0;
+    let inline = diagram.inline();
     assert!(!inline.contains("<style>") && inline.contains("class=\"diagram\""), "{inline}");
     // The shapes are the same ones.
     let shapes = |text: &str| text.matches("class=\"line").count();
@@ -180,4 +180,22 @@ fn a_fact_can_be_found_by_its_name() {
     let scene = (refraction::DIAGRAM.draw)();
     assert!(matches!(scene.of_name("refracted").next(), Some(Shape::Line { .. })));
     assert!(scene.of_name("nothing").next().is_none());
+}
+
+#[test]
+fn the_gradient_gives_the_red_of_a_ray_traced_alone() {
+    use lapidary_dispersion::{DISPERSION_LINE_B, DISPERSION_LINE_D, direction};
+    let [red, middle] = [DISPERSION_LINE_B, DISPERSION_LINE_D].map(dispersion::through);
+    let offset = dispersion::index(DISPERSION_LINE_B) - dispersion::index(DISPERSION_LINE_D);
+    let guessed = direction(middle.direction, middle.gradient, offset);
+    let (off, spread) = (guessed.distance(red.direction), middle.direction.distance(red.direction));
+    assert!(off < 0.15 * spread && spread > 0.01, "{off} of {spread}");
+}
+
+#[test]
+fn darker_matter_is_brighter_at_a_grazing_view() {
+    let grazing = half_space::GAMMAS.map(|gamma| half_space::seen(85.0, gamma));
+    assert!(grazing.is_sorted_by(|one, other| one < other) && grazing[2] > 1.5, "{grazing:?}");
+    let white: Vec<f64> = [0.0, 40.0, 80.0].map(|angle| half_space::seen(angle, 0.0)).into();
+    assert!(white.iter().all(|seen| (seen - 1.0).abs() < 0.1), "{white:?}");
 }

@@ -31,7 +31,7 @@ const SIDE: f64 = 40.0;
 pub fn outline() -> Vec<DVec2> {
     let radius = |angle: f64| 1.0 + 0.1 * (2.0 * angle).cos() + 0.75 * (3.0 * angle - 1.53).cos();
     let turns = (0..90).map(|k| f64::from(k) * std::f64::consts::TAU / 90.0);
-    turns.map(|angle| at(7.95, 4.6) + radius(angle) * at(4.1 * angle.cos(), 2.6 * angle.sin())).collect()
+    turns.map(|angle| at(7.95, 4.6) + radius(angle) * at(3.8 * angle.cos(), 2.6 * angle.sin())).collect()
 }
 
 /// Returns the mesh, a prism along z: positions and indices.
