@@ -120,7 +120,7 @@ fn counted(scene: &mut Scene) {
         // The number of crossings before the voxel's centre; none beside a crossing, where the outline rises.
         let before = crossings.iter().filter(|crossing| **crossing <= centre).count();
         let paint = if before % 2 == 1 { Paint::Accent } else { Paint::Dim };
-        if crossings.iter().all(|crossing| (crossing - centre).abs() > 0.99) {
+        if crossings.iter().all(|crossing| (crossing - centre).abs() > 0.8) {
             scene.note(row(f64::from(centre)) + at(0.0, -10.5), Anchor::Middle, paint, &format!("${before}$"));
         }
     }
