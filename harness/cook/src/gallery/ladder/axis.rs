@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn labels_are_round_and_few() {
         let of = |low: f64, high: f64| Axis::of([low, high].into_iter(), [0.0, 1.0]).ticks;
-        assert_eq!(of(0.11, 0.18), [0.1, 0.12, 0.14, 0.16, 0.18, 0.2]);
+        assert_eq!(of(0.11, 0.18), [0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2]);
         assert_eq!(of(0.2, 0.75), [0.2, 0.3, 0.4, 0.5, 0.6, 0.8]);
         assert_eq!(of(0.7, 159.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
         assert_eq!(of(1e-4, 30.0), [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0]);
