@@ -68,20 +68,46 @@
     columns.forEach((column) => column.remove());
   };
 
-  /** Hides labels that stand on others; those of defaults and of the visitor stay. */
+  /** Heights at which a visitor's label is tried, beside its point. */
+  const HEIGHTS = [-9, 20, -26, 37];
+
+  /** Hides labels that stand on others; those of defaults stay, and a visitor's looks for a free height. */
   const thin = (svg) => {
     const taken = [];
-    const labels = all('.point .label', svg);
-    const rank = (label) => (label.closest('.visitor, .default') ? 0 : 1);
-    for (const label of labels.sort((a, b) => rank(a) - rank(b))) {
-      label.style.display = '';
+    const rankOf = (label) => (label.closest('.default') ? 0 : label.closest('.visitor') ? 1 : 2);
+    const isFree = (label) => {
       const { left, right, top, bottom } = label.getBoundingClientRect();
-      const covers = (other) => left < other.right && other.left < right && top < other.bottom && other.top < bottom;
-      const hidden = rank(label) === 1 && taken.some(covers);
-      label.style.display = hidden ? 'none' : '';
+      return !taken.some((other) => left < other.right && other.left < right && top < other.bottom && other.top < bottom);
+    };
+    for (const label of all('.point .label', svg).sort((a, b) => rankOf(a) - rankOf(b))) {
+      label.style.display = '';
+      const rank = rankOf(label);
+      if (rank === 1) {
+        const free = HEIGHTS.find((y) => {
+          label.setAttribute('y', y);
+          return isFree(label);
+        });
+        if (free === undefined) label.setAttribute('y', HEIGHTS[0]);
+      }
+      const isHidden = rank === 2 && !isFree(label);
+      if (!isHidden) taken.push(label.getBoundingClientRect());
+      label.style.display = isHidden ? 'none' : '';
       const leader = label.parentNode.querySelector('.leader');
       if (leader) leader.style.display = label.style.display;
-      if (!hidden) taken.push({ left, right, top, bottom });
+    }
+  };
+
+  /** Puts labels that would run out of the drawing on the other side of their points. */
+  const turn = (svg, scale) => {
+    const { width } = svg.viewBox.baseVal;
+    for (const label of all('.point .label', svg)) {
+      const x = across(scale, label.closest('.point').dataset.ms);
+      const [beside, length] = [Number(label.getAttribute('x')), label.getComputedTextLength()];
+      const isOut = beside > 0 ? x + beside + length > width : x + beside - length < 0;
+      if (!isOut) continue;
+      label.setAttribute('x', -beside);
+      label.setAttribute('text-anchor', beside > 0 ? 'end' : 'start');
+      label.parentNode.querySelector('.leader')?.setAttribute('x2', -beside);
     }
   };
 
@@ -122,6 +148,7 @@
       relabel(svg, scale);
     }
     relay(svg, scale);
+    turn(svg, scale);
     thin(svg);
     return point;
   };
