@@ -159,7 +159,7 @@ mod tests {
         // The least is inside the box.
         // A range so wide that its ends are no longer those of a sum.
         ends_are_those_of_the_judgement("4 backward", 1.0, |x| 3e5 * (1.0 + 1e6 * (x - 1.0)));
-        ends_are_those_of_the_judgement("16 backward", 1.000_000_2, |x| 1.0 + 1e9 * (x - 1.0) * (x - 1.0));
+        ends_are_those_of_the_judgement("0.1 ulp + 16 backward", 1.000_000_2, |x| 1.0 + 1e9 * (x - 1.0) * (x - 1.0));
     }
 
     #[test]

@@ -126,31 +126,35 @@ impl<'a> Search<'a> {
         &self.others
     }
 
-    /// Searches for the whole range, without a result to reach: the corners, the places at which the case changes if
-    /// there are cases, and from the best of them the extrema of the results at `floats`. `centre` is the oracle's
-    /// result at the centre. Where the function bends within the box, many places inside it are visited as well.
+    /// Searches for the whole range, without a result to reach: the corners, and the places at which the case changes
+    /// if there are cases; then the corner downhill of each end of each result at `floats`, where a monotonic function
+    /// has its extremum. Where the function bends within the box, many places inside it and the extrema as well.
+    /// `centre` is the oracle's result at the centre.
     pub fn look_everywhere(&mut self, inputs: &InputBox, floats: &[usize], centre: &[f64]) {
         let effort = if self.places.is_empty() { Effort::Corners } else { Effort::Boundaries };
         self.corners(effort, inputs, |_| false);
-        self.descend_from_ends(inputs, floats);
+        self.from_ends(floats, |search, best, what| {
+            let corner = search.downhill(inputs, &best, what);
+            search.visit(&corner);
+        });
         if self.bends(floats, centre) {
             self.corners(Effort::Boundaries, inputs, |_| false);
             for number in 0..PLACES_WHERE_IT_BENDS {
                 self.visit(&inputs.place(number));
             }
-            self.descend_from_ends(inputs, floats);
+            self.from_ends(floats, |search, best, what| search.descend(inputs, best, what, &|_| false));
         }
     }
 
-    /// Searches for the least and the greatest of each of these results, from the best places so far.
-    fn descend_from_ends(&mut self, inputs: &InputBox, floats: &[usize]) {
+    /// Goes on from the best place so far of the least and of the greatest of each of these results.
+    fn from_ends(&mut self, floats: &[usize], go_on: impl Fn(&mut Self, Vec<f64>, (usize, f64))) {
         if self.spread().is_none() {
             return;
         }
         for index in floats {
             for (end, sign) in [(0, 1.0), (1, -1.0)] {
                 let best = self.ends[*index][end].clone();
-                self.descend(inputs, best, (*index, sign), &|_| false);
+                go_on(self, best, (*index, sign));
             }
         }
     }

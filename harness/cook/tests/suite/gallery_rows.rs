@@ -27,6 +27,20 @@ const PLANTED: [(&str, &str, &str); 6] = [
     ("voxelization_taxicab", "+", "-"),
 ];
 
+/// Of the site's script, what the check asks for.
+const SITE: &str = "
+    window.gallery = {
+      waiting: new Map(),
+      deliver: (name, value) => gallery.waiting.get(name)(value),
+      load: (name) => new Promise((resolve, reject) => {
+        gallery.waiting.set(name, resolve);
+        const script = document.createElement('script');
+        script.src = `data/${name}.js`;
+        script.onerror = () => reject(new Error(name));
+        document.head.append(script);
+      }),
+    };";
+
 /// A page with nothing but the script, and the rows of some modules.
 fn page(modules: &[&str]) -> Option<(TempDir, Page)> {
     let mut page = started()?;
@@ -34,11 +48,9 @@ fn page(modules: &[&str]) -> Option<(TempDir, Page)> {
     let summary = rows::write_of(folder.path(), |module| modules.contains(&module.name)).expect("written");
     assert!(summary.functions > 0 && summary.rows >= summary.functions * rows::DRAWN as usize, "{summary:?}");
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gallery/assets");
-    let scripts = ["site.js", "check.js"].map(|name| {
-        std::fs::copy(assets.join(name), folder.path().join(name)).expect("copied");
-        format!("<script src=\"{name}\"></script>")
-    });
-    let html = format!("<!DOCTYPE html>\n<html data-root=\"\">\n<title>Rows</title>\n{}\n</html>\n", scripts.concat());
+    std::fs::copy(assets.join("check.js"), folder.path().join("check.js")).expect("copied");
+    let scripts = format!("<script>{SITE}</script>\n<script src=\"check.js\"></script>");
+    let html = format!("<!DOCTYPE html>\n<html>\n<title>Rows</title>\n{scripts}\n</html>\n");
     let index = folder.path().join("index.html");
     std::fs::write(&index, html).expect("written");
     page.open(&format!("file://{}", index.display())).expect("opened");
