@@ -186,14 +186,17 @@ impl<'a> Compare<'a> {
         // The paper's rung, or else the cheapest, beside what is chosen if nothing is asked for.
         let left = kind.paper.iter().map(|rung| (*rung).to_owned()).find(|rung| has(rung)).unwrap_or(fast);
         let right = kind.technique.rung(Quality::Good).to_string();
-        let pair = [left, right].map(|rung| if has(&rung) { rung } else { pictures.first().map_or_else(String::new, |first| first.rung.clone()) });
+        let pair = [left, right].map(|rung| {
+            if has(&rung) { rung } else { pictures.first().map_or_else(String::new, |first| first.rung.clone()) }
+        });
         let [left, right] = pair;
         let compared = |picture: &'a RungPicture| {
             let step = steps.iter().find(|step| step.rung == picture.rung);
             let unmeasured = if picture.rung == REFERENCE { "" } else { "not measured in this ladder" };
-            let figures = step.map_or_else(|| unmeasured.to_owned(), |step| {
-                format!("{} {}, {:.1} ms in the ladder’s mean", kind.error, figure(step.error), step.ms)
-            });
+            let figures = step.map_or_else(
+                || unmeasured.to_owned(),
+                |step| format!("{} {}, {:.1} ms in the ladder’s mean", kind.error, figure(step.error), step.ms),
+            );
             let qualities = qualities(kind, &picture.rung).join(", ");
             Compared {
                 picture,
@@ -201,7 +204,11 @@ impl<'a> Compare<'a> {
                 exact: picture.exact.as_ref().map(|file| format!("{root}{file}")),
                 alt: format!("{} drawn by {}", kind.scene(), picture.rung),
                 figures,
-                choice: if qualities.is_empty() { picture.rung.clone() } else { format!("{} ({qualities})", picture.rung) },
+                choice: if qualities.is_empty() {
+                    picture.rung.clone()
+                } else {
+                    format!("{} ({qualities})", picture.rung)
+                },
                 chosen: picture.rung == REFERENCE || pictures::is_chosen(kind, &picture.rung),
             }
         };
@@ -222,7 +229,8 @@ fn is_front(kind: &Kind, step: &Step) -> bool {
 
 fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
     let qualities = qualities(kind, &step.rung);
-    let default = if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
+    let default =
+        if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
     Point {
         rung: step.rung.clone(),
         ms: step.ms,
@@ -238,5 +246,11 @@ fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
 
 /// Shows an error with three digits.
 fn figure(error: f64) -> String {
-    if error >= 10.0 { format!("{error:.1}") } else if error >= 1.0 { format!("{error:.2}") } else { format!("{error:.3}") }
+    if error >= 10.0 {
+        format!("{error:.1}")
+    } else if error >= 1.0 {
+        format!("{error:.2}")
+    } else {
+        format!("{error:.3}")
+    }
 }

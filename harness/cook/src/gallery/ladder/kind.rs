@@ -171,7 +171,8 @@ impl Kind {
     /// Returns the rungs by increasing time. A record also holds forms that are no rungs, for comparison.
     pub(super) fn steps(&self) -> Vec<&'static Step> {
         let is_rung = |step: &&Step| step.rung.parse::<lapidary_plan::Rung>().is_ok();
-        let mut steps: Vec<&Step> = self.ladder().into_iter().flat_map(|ladder| &ladder.steps).filter(is_rung).collect();
+        let mut steps: Vec<&Step> =
+            self.ladder().into_iter().flat_map(|ladder| &ladder.steps).filter(is_rung).collect();
         steps.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         steps
     }

@@ -198,9 +198,11 @@ fn enlarged(gpu: &Gpu, kind: &Kind, truth: &Picture) -> Result<Picture, LadderEr
     // The interpolation overshoots at edges.
     let linear: Vec<[f32; 4]> = image.pixels().map(|pixel| pixel.0.map(|value| value.max(0.0))).collect();
     let encoded = vec![[0; 4]; linear.len()];
-    let mut picture = Picture { width: SIDE, height: SIDE, linear, encoded, lost: None, walked: None, notes: Vec::new() };
+    let mut picture =
+        Picture { width: SIDE, height: SIDE, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     let usual = Settings::of_size(SIDE, SIDE);
-    let settings = kind.steps().first().and_then(|step| kind.shot(&step.rung)).map_or(usual, |shot| shot.settings(SIDE));
+    let settings =
+        kind.steps().first().and_then(|step| kind.shot(&step.rung)).map_or(usual, |shot| shot.settings(SIDE));
     render::encode(gpu, &settings, &mut picture)?;
     Ok(picture)
 }

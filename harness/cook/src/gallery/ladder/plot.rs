@@ -232,7 +232,10 @@ fn candidates(width: f64, ring: f64, [x, y]: [f64; 2]) -> Vec<(Label, Area)> {
             let middle = y + dy;
             let area = [left, middle - 0.5 * LETTER[1], left + width, middle + 0.5 * LETTER[1]];
             let anchor = if anchor == 0.0 { "start" } else { "end" };
-            all.push((Label { text: String::new(), dx: rounded(dx), dy: rounded(dy), anchor, led: reach > 12.0 }, area));
+            all.push((
+                Label { text: String::new(), dx: rounded(dx), dy: rounded(dy), anchor, led: reach > 12.0 },
+                area,
+            ));
         }
     }
     all
@@ -244,12 +247,23 @@ mod tests {
 
     fn point(rung: &str, ms: f64, error: f64, front: bool, qualities: &[&'static str]) -> Point {
         let title = format!("{rung}: {error}");
-        Point { rung: rung.to_owned(), ms, error, series: 1, front, qualities: qualities.into(), paper: false, href: None, title }
+        Point {
+            rung: rung.to_owned(),
+            ms,
+            error,
+            series: 1,
+            front,
+            qualities: qualities.into(),
+            paper: false,
+            href: None,
+            title,
+        }
     }
 
     #[test]
     fn points_stand_where_the_axes_say_and_labels_stand_apart() {
-        let many: Vec<Point> = (0..12).map(|k| point("walk-8+tracker", 1.0 + 0.2 * f64::from(k), 0.5, true, &[])).collect();
+        let many: Vec<Point> =
+            (0..12).map(|k| point("walk-8+tracker", 1.0 + 0.2 * f64::from(k), 0.5, true, &[])).collect();
         let defaults = [point("a", 1.0, 0.9, true, &["fast"]), point("b", 1.1, 0.89, true, &["good", "best"])];
         let points = [many, defaults.into()].concat();
         for drawing in drawings(&points) {
@@ -259,7 +273,9 @@ mod tests {
                 assert!(placed.y > drawing.top && placed.y < drawing.bottom);
             }
             let labelled: Vec<&Placed> = drawing.points.iter().filter(|placed| placed.label.is_some()).collect();
-            let has = |text: &str| labelled.iter().any(|placed| placed.label.as_ref().is_some_and(|label| label.text == text));
+            let has = |text: &str| {
+                labelled.iter().any(|placed| placed.label.as_ref().is_some_and(|label| label.text == text))
+            };
             assert!(has("fast: a") && has("good, best: b"), "defaults are always named");
             let areas: Vec<Area> = labelled
                 .iter()

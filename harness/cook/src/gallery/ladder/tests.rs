@@ -65,7 +65,10 @@ fn every_point_and_every_row_leads_to_a_picture_that_is_there() {
         assert!(exact.iter().all(|file| file.starts_with("../images/rungs/") && file.ends_with(".png")));
         assert_eq!(html.matches("<template").count(), pictures.len());
         let missing: Vec<RungPicture> = pictures.iter().filter(|picture| picture.rung == REFERENCE).cloned().collect();
-        assert!(section(kind, &missing, "").expect("drawn").0.contains("reference.jpg"), "one picture is enough to compare");
+        assert!(
+            section(kind, &missing, "").expect("drawn").0.contains("reference.jpg"),
+            "one picture is enough to compare"
+        );
     }
 }
 
@@ -78,7 +81,13 @@ fn what_is_drawn_for_another_rung_has_the_same_error() {
             let pictured = kind.pictured(&step.rung, &steps);
             let of = steps.iter().find(|other| other.rung == pictured).expect("a measured rung");
             // The same hits or costs give the same picture up to rounding.
-            assert!((step.error / of.error - 1.0).abs() < 1e-3, "{} by {pictured}: {} {}", step.rung, step.error, of.error);
+            assert!(
+                (step.error / of.error - 1.0).abs() < 1e-3,
+                "{} by {pictured}: {} {}",
+                step.rung,
+                step.error,
+                of.error
+            );
             twins += usize::from(pictured != step.rung);
         }
     }
@@ -104,7 +113,13 @@ fn what_is_filled_in_is_escaped() {
 #[test]
 fn a_figure_has_its_caption_command_and_file() {
     let text = figure_of("../", "images/full.png", "t < u", "./cook render ruby");
-    for part in ["href=\"../images/full.png\"", "alt=\"t &lt; u\"", "<em>caption</em>", "<code>walk-8</code>", "./cook render ruby"] {
+    for part in [
+        "href=\"../images/full.png\"",
+        "alt=\"t &lt; u\"",
+        "<em>caption</em>",
+        "<code>walk-8</code>",
+        "./cook render ruby",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
@@ -170,8 +185,11 @@ fn a_page_to_look_at() {
         }
     }
     let sections: Vec<String> = drawn.iter().map(|of| section(of.kind, &of.pictures, "").expect("shown").0).collect();
-    let shown = |name: &str| figure_of("", &format!("images/rungs/{name}.jpg"), name, "./cook render brilliant --rung walk-8+tracker");
+    let shown = |name: &str| {
+        figure_of("", &format!("images/rungs/{name}.jpg"), name, "./cook render brilliant --rung walk-8+tracker")
+    };
     let figures = ["convex/walk-8-tracker", "translucent/diffusion-64", "cdrf/drift"].map(shown);
-    let page = include_str!("look.html").replace("SECTIONS", &sections.join("\n")).replace("FIGURES", &figures.join("\n"));
+    let page =
+        include_str!("look.html").replace("SECTIONS", &sections.join("\n")).replace("FIGURES", &figures.join("\n"));
     std::fs::write(out.join("index.html"), page).expect("written");
 }
