@@ -59,14 +59,6 @@ pub enum LiveError {
         /// What differs.
         what: String,
     },
-    /// A slider that should move fields in proportion does not.
-    #[error("slider `{slider}`: field `{field}` does not follow in proportion; make a frame for each step")]
-    Bent {
-        /// Name of the slider.
-        slider: &'static str,
-        /// The field.
-        field: String,
-    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {error}", path.display())]
     File {

@@ -135,7 +135,7 @@ function set(changes = {}) {
 /** Says why it does not run; the picture stands there again. */
 function failed(error) {
   const reason = error.message.split('\n')[0].replace(/[.\s]+$/, '');
-  tell(`${reason}. The picture above is the one that the renderer draws.`, true);
+  tell(`${reason[0]?.toUpperCase()}${reason.slice(1)}. The picture above is the one that the renderer draws.`, true);
   [canvas.hidden, image.hidden, run.hidden] = [true, false, false];
   one('.live-controls').disabled = true;
   settle.reject(error);

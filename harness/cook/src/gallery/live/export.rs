@@ -86,6 +86,8 @@ pub fn manifest(live: &LiveScene, store: &mut Store) -> Result<Manifest, LiveErr
     }
     let sliders = live.sliders.iter().map(|slider| {
         let (values, start) = slider.values(&scene);
+        // With the digits of an f32.
+        let values: Vec<f64> = values.iter().filter_map(|value| value.to_string().parse().ok()).collect();
         (slider.name, json!({"values": values, "start": start, "unit": slider.unit, "option": slider.option}))
     });
     let toggles = live.toggles.iter().map(|toggle| {
@@ -256,7 +258,6 @@ fn moves(
         let tables = match slider.moves {
             Moves::Fields(rule) => of.by_fields(rule),
             Moves::Scene(change) => of.by_frames(change, found)?,
-            Moves::Linear(change) => of.by_line(change)?,
         };
         // Buffers of all bodies often hold the same.
         let mut grouped: Vec<Move> = Vec::new();
@@ -311,28 +312,6 @@ impl Sliding<'_> {
             what: fields::difference(&self.base.frame, &next).unwrap_or_else(|| "bytes outside of fields".to_owned()),
         };
         fields::changed(&self.base.frame, &next).ok_or_else(refused)
-    }
-
-    fn by_line(&self, change: fn(&mut Scene, &mut Settings, f32)) -> Result<Tables, LiveError> {
-        let last = self.values.len() - 1;
-        let (start, end) = (self.values[self.start], self.values[last]);
-        let ends = self.frame(change, last)?;
-        let node = |place: &Place, end_value: &[f32], value: f32| -> Vec<f32> {
-            let share = (value - start) / (end - start);
-            fields::value(&self.base.frame, place).iter().zip(end_value).map(|(base, end)| base + share * (end - base)).collect()
-        };
-        for (place, value) in self.frame(change, 0)? {
-            let expected = ends.iter().find(|(other, _)| *other == place).map(|(_, end)| node(&place, end, self.values[0]));
-            let near = |(one, other): (&f32, &f32)| (one - other).abs() <= 1e-4 * one.abs().max(other.abs()).max(1e-6);
-            if !expected.is_some_and(|expected| expected.iter().zip(&value).all(near)) {
-                return Err(LiveError::Bent { slider: self.slider.name, field: place.field });
-            }
-        }
-        let table = |(place, end): (Place, Vec<f32>)| {
-            let nodes = self.values.iter().map(|value| node(&place, &end, *value)).collect();
-            (place, nodes)
-        };
-        Ok(ends.into_iter().map(table).collect())
     }
 
     fn by_frames(&self, change: fn(&mut Scene, &mut Settings, f32), found: &mut Found) -> Result<Tables, LiveError> {

@@ -124,14 +124,13 @@ pub const SCENES: [LiveScene; 5] = [
         title: "A ring of skin, live",
         summary: "Light creeps round what is curved: make the free path longer and watch the shadow’s edge soften, red first. Lambert’s law \
             on the other side of the wipe knows none of it.",
-        rungs: &["drift", "accurate", "cheap", "power", "quadrature", "wrap", "lambert"],
+        rungs: &["drift", "accurate", "cheap", "wrap", "lambert"],
         other: "lambert",
         ladder: "cdrf",
         technique: Technique::Cdrf,
         toggles: &[
             toggle(Effect::HalfSpace, "the law of a half space", true),
             toggle(Effect::Shadow, "shadows", true),
-            AROUND,
             HIGHLIGHTS,
         ],
         sliders: &[&FREE_PATH, &ROUGHNESS, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],
@@ -142,7 +141,7 @@ pub const SCENES: [LiveScene; 5] = [
         title: "A marble bunny by paths of light, live",
         summary: "Light takes the cheapest way from the sun to each voxel, and is found anew whenever the sun or the stone changes; turning \
             the bunny needs none of it.",
-        rungs: &["godunov-64", "godunov-32", "tiled-26-32", "lambert-shadowed", "lambert", "diffusion-64"],
+        rungs: &["godunov-64", "godunov-32", "diffusion-64", "lambert-shadowed", "lambert"],
         other: "lambert-shadowed",
         ladder: "translucent",
         technique: Technique::Translucent,

@@ -35,8 +35,6 @@ pub struct Slider {
 pub enum Moves {
     /// The scene or the settings; the frame is made anew, and the fields compared.
     Scene(fn(&mut Scene, &mut Settings, f32)),
-    /// As `Scene`, where each field follows the value in proportion.
-    Linear(fn(&mut Scene, &mut Settings, f32)),
     /// Fields of buffers, by the frame's own and the value at the start and now.
     Fields(fn(&mut Fields<'_>, f32, f32)),
 }
@@ -151,7 +149,7 @@ pub const FREE_PATH: Slider = Slider {
     range: [0.25, 4.0],
     relative: true,
     logarithmic: true,
-    steps: 13,
+    steps: 9,
     option: "",
     start: |scene| {
         let medium = scene.objects.iter().find_map(|object| object.material.medium.as_ref());
@@ -193,7 +191,7 @@ pub const LIGHT_TURN: Slider = Slider {
     range: [-180.0, 180.0],
     relative: false,
     logarithmic: false,
-    steps: 25,
+    steps: 19,
     option: "",
     start: |_| 0.0,
     moves: Moves::Scene(|scene, _, now| {
@@ -221,10 +219,10 @@ pub const LIGHT_POWER: Slider = Slider {
     range: [0.125, 8.0],
     relative: false,
     logarithmic: true,
-    steps: 13,
+    steps: 7,
     option: "",
     start: |_| 1.0,
-    moves: Moves::Linear(|scene, _, now| {
+    moves: Moves::Scene(|scene, _, now| {
         for light in &mut scene.lights {
             match light {
                 Light::Directional { irradiance, .. } => *irradiance *= now,

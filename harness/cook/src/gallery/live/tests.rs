@@ -3,20 +3,23 @@ use super::fields;
 use super::*;
 use base64::Engine as _;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::Read as _;
+use std::sync::LazyLock;
 
 fn scene(name: &str) -> &'static LiveScene {
     SCENES.iter().find(|live| live.scene == name).expect("a live scene")
 }
 
-/// Exports a scene, and returns what the page needs to know of it.
-fn exported(name: &str) -> (tempfile::TempDir, Manifest, u64) {
+/// All scenes, exported once: the site's folder, what the pages need to know, and the bytes of it all.
+static EXPORTED: LazyLock<(tempfile::TempDir, BTreeMap<&str, Manifest>, u64)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     let mut store = Store::new(folder.path()).expect("a store");
-    let manifest = write_scene(scene(name), &mut store).expect("exported");
+    let manifest = |live: &LiveScene| (live.scene, write_scene(live, &mut store).expect("exported"));
+    let manifests = SCENES.iter().map(manifest).collect();
     let bytes = store.bytes();
-    (folder, manifest, bytes)
-}
+    (folder, manifests, bytes)
+});
 
 /// Reads a stored file as a page does.
 fn stored(site: &Path, name: &str) -> Vec<u8> {
@@ -32,8 +35,8 @@ fn stored(site: &Path, name: &str) -> Vec<u8> {
 /// Every frame of a scene is whole: all that it names is stored, its shaders are valid, and each field that a slider
 /// moves stands in one of its buffers, or the buffer is left out with its effect.
 fn is_whole(name: &str) {
-    let (folder, manifest, _) = exported(name);
-    let live = scene(name);
+    let (folder, manifests, _) = &*EXPORTED;
+    let (manifest, live) = (&manifests[name], scene(name));
     assert_eq!(manifest.rungs.len(), live.rungs.len());
     let mut moved: Vec<&str> = Vec::new();
     for (rung, of) in &manifest.rungs {
@@ -72,8 +75,8 @@ fn is_whole(name: &str) {
 }
 
 #[test]
-fn a_stone_is_whole() {
-    is_whole("ruby");
+fn stones_are_whole() {
+    ["brilliant", "ruby"].into_iter().for_each(is_whole);
 }
 
 #[test]
@@ -82,15 +85,14 @@ fn a_body_with_shadows_is_whole() {
 }
 
 #[test]
-fn a_body_that_is_solved_is_whole() {
-    is_whole("bunny");
+fn bodies_that_are_solved_are_whole() {
+    ["bunny", "dragon"].into_iter().for_each(is_whole);
 }
 
 /// The fields at a step are those of a frame made from a scene that was changed so.
 #[test]
 fn a_step_is_the_renderers_own_frame() {
-    let (_folder, manifest, _) = exported("bunny");
-    let live = scene("bunny");
+    let (manifest, live) = (&EXPORTED.1["bunny"], scene("bunny"));
     let original = Scene::named(live.scene).expect("built in");
     let slider = live.sliders.iter().find(|slider| slider.name == "turn").expect("a slider");
     let (values, _) = slider.values(&original);
@@ -111,7 +113,7 @@ fn a_step_is_the_renderers_own_frame() {
 
 #[test]
 fn all_data_fits_the_site() {
-    let bytes: u64 = SCENES.iter().map(|live| exported(live.scene).2).sum();
+    let bytes = EXPORTED.2;
     assert!(bytes < 8 << 20, "{bytes}");
 }
 
@@ -147,20 +149,4 @@ fn the_executor_has_at_most_500_lines() {
     let executor = include_str!("../../../../../docs/engines/frame.js");
     let drawing = include_str!("../assets/live.js");
     assert!(executor.lines().count() + drawing.lines().count() <= 500);
-}
-
-#[test]
-#[ignore = "to look at"]
-fn writes_to_look_at() {
-    let folder = std::path::PathBuf::from(std::env::var_os("LIVE_OUT").expect("LIVE_OUT"));
-    let gpu = Gpu::shared(&lapidary_gpu::AdapterChoice::from_environment()).expect("a device");
-    let start = std::time::Instant::now();
-    println!("{} bytes, {:?}", write(&folder, gpu).expect("written"), start.elapsed());
-    std::fs::create_dir_all(folder.join("live")).expect("a folder");
-    for live in &SCENES {
-        let part = section(live).expect("a part").0;
-        let style = "<link rel=stylesheet href=../style.css><link rel=stylesheet href=../live.css>";
-        let page = ["<!doctype html><html lang=en data-root=\"../\"><meta charset=utf-8>", style, "<script src=../site.js defer></script><script src=../environment.js defer></script><body><main>", &part, "</main><div id=status></div>"].concat();
-        std::fs::write(folder.join(format!("live/{}.html", live.scene)), page).expect("written");
-    }
 }
