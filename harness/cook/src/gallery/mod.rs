@@ -7,6 +7,7 @@ mod highlight;
 pub mod ladder;
 pub mod live;
 mod markdown;
+mod mathematics;
 mod mirror;
 mod pages;
 pub mod pictures;

@@ -35,8 +35,10 @@ pub fn plain(text: &str) -> String {
     text.replace('`', "")
 }
 
-/// Converts text to a part of an anchor's name: lower-case letters, digits and single hyphens.
+/// Converts text to a part of an anchor's name: lower-case letters, digits and single hyphens. Raised and lowered digits
+/// are left out, as code hosts do it.
 pub fn slug(text: &str) -> String {
+    let text = text.replace(|c: char| c.is_numeric() && !c.is_ascii_digit(), "");
     let words: Vec<String> =
         text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
     words.join("-")
@@ -63,5 +65,6 @@ mod tests {
     #[test]
     fn anchors_hold_letters_digits_and_hyphens() {
         assert_eq!(slug("  Hard cases: n → 1 "), "hard-cases-n-1");
+        assert_eq!(slug("Is σ = σ₀κ true?"), "is-σ-σκ-true");
     }
 }

@@ -133,7 +133,7 @@ document.addEventListener('toggle', reachScrollers, true);
 // A link to something within a fold opens it.
 function unfold() {
   const name = decodeURIComponent(location.hash.slice(1));
-  const target = name && document.getElementById(name);
+  const target = name ? document.getElementById(name) : null;
   for (let fold = target?.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
   if (target?.tagName === 'DETAILS') target.open = true;
 }
