@@ -1,4 +1,4 @@
-//! The pictures on the site: the file as it is, and a small one for the page.
+//! The pictures on the site: each at its full size, and a small one for the page if it is large.
 
 use super::templates::{self, Markup};
 use super::{GalleryError, text};
@@ -6,13 +6,13 @@ use crate::snapshot::{Committed, WALKED};
 use image::codecs::jpeg::JpegEncoder;
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Width in pixels of the picture in the page.
 const THUMB_WIDTH: u32 = 640;
-/// JPEG quality of the picture in the page.
-const THUMB_QUALITY: u8 = 88;
+/// JPEG quality of the site's pictures; the committed files are lossless.
+const QUALITY: u8 = 92;
 
 /// A picture to show.
 #[derive(Clone, Debug)]
@@ -112,7 +112,7 @@ pub fn walked(folder: &Path) -> Vec<Source> {
     WALKED.iter().map(of).collect()
 }
 
-/// Copies the pictures into the site's folder, and makes their small ones.
+/// Writes the pictures into the site's folder.
 ///
 /// # Errors
 /// Returns an error that names the picture if one cannot be read or written.
@@ -130,22 +130,20 @@ fn place_one(source: &Source, adapter: &str, site: &Path) -> Result<Shown, Galle
     };
     let folder = ["images/", &source.folder].concat();
     fs::create_dir_all(site.join(&folder)).map_err(fault)?;
-    let file = [&folder, "/", &source.name, ".png"].concat();
-    fs::copy(&source.file, site.join(&file)).map_err(fault)?;
     let picture = image::open(&source.file).map_err(|error| fault(std::io::Error::other(error)))?.into_rgb8();
     let (width, height) = picture.dimensions();
-    let thumb = [&folder, "/", &source.name, "-small.jpg"].concat();
-    let small = if width > THUMB_WIDTH {
-        let scaled = (u64::from(height) * u64::from(THUMB_WIDTH) / u64::from(width)).max(1);
-        let scaled = u32::try_from(scaled).unwrap_or(height);
-        image::imageops::resize(&picture, THUMB_WIDTH, scaled, image::imageops::FilterType::CatmullRom)
+    let file = [&folder, "/", &source.name, ".jpg"].concat();
+    encode(&picture, &site.join(&file)).map_err(fault)?;
+    let thumb = if width > THUMB_WIDTH {
+        let scaled = u64::from(height) * u64::from(THUMB_WIDTH) / u64::from(width);
+        let scaled = u32::try_from(scaled.max(1)).unwrap_or(height);
+        let small = image::imageops::resize(&picture, THUMB_WIDTH, scaled, image::imageops::FilterType::CatmullRom);
+        let thumb = [&folder, "/", &source.name, "-small.jpg"].concat();
+        encode(&small, &site.join(&thumb)).map_err(fault)?;
+        thumb
     } else {
-        picture
+        file.clone()
     };
-    let mut writer = BufWriter::new(File::create(site.join(&thumb)).map_err(fault)?);
-    JpegEncoder::new_with_quality(&mut writer, THUMB_QUALITY)
-        .encode_image(&small)
-        .map_err(|error| fault(std::io::Error::other(error)))?;
     Ok(Shown {
         name: source.name.clone(),
         folder: source.folder.clone(),
@@ -161,4 +159,10 @@ fn place_one(source: &Source, adapter: &str, site: &Path) -> Result<Shown, Galle
         height,
         source: source.source.clone(),
     })
+}
+
+fn encode(picture: &image::RgbImage, path: &Path) -> std::io::Result<()> {
+    let mut writer = BufWriter::new(File::create(path)?);
+    JpegEncoder::new_with_quality(&mut writer, QUALITY).encode_image(picture).map_err(std::io::Error::other)?;
+    writer.flush()
 }
