@@ -330,6 +330,7 @@ for (const kind of ['dragover', 'dragleave', 'drop']) {
 window.addEventListener('hashchange', () => live?.device && set(parsed(location.hash.slice(1))));
 run.addEventListener('click', start);
 run.hidden = false;
+if (!navigator.gpu) tell('This browser has no WebGPU, so the picture that the renderer draws stands here.');
 
 /** For the console and for tests: all promises are kept when the picture is shown. */
 gallery.live = {

@@ -262,7 +262,8 @@ fn moves(
         // Buffers of all bodies often hold the same.
         let mut grouped: Vec<Move> = Vec::new();
         for (place, nodes) in tables {
-            if !fields::is_read(&base.frame, &base.texts, &base.document, &place) {
+            let is_read = || fields::is_read(&base.frame, &base.texts, &base.document, &place);
+            if !moves_at_all(&nodes, &nodes[start]) || !is_read() {
                 continue;
             }
             match grouped.iter_mut().find(|of| of.nodes == nodes && of.at[0].field == place.field) {
@@ -273,6 +274,12 @@ fn moves(
         all.extend(grouped);
     }
     Ok(all)
+}
+
+/// Whether values differ from those at the start by more than their rounding.
+fn moves_at_all(nodes: &[Vec<f32>], start: &[f32]) -> bool {
+    let size = start.iter().fold(0.0f32, |most, value| most.max(value.abs()));
+    nodes.iter().any(|node| node.iter().zip(start).any(|(now, start)| (now - start).abs() > 1e-4 * size))
 }
 
 /// The values of fields at each step of a slider.
