@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use lapidary_environment::oracle;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 /// Number of coefficients: 1 of degree 0, 3 of 1, 5 of 2, 9 of 4.
 pub const COUNT: usize = 18;
@@ -28,6 +29,15 @@ fn grid(environment: &Environment) -> [u32; 2] {
 /// Returns the coefficients, linear RGB, by degree and order.
 #[must_use]
 pub fn project(environment: &Environment) -> [DVec3; COUNT] {
+    // The studio is always the same, and every frame that it lights asks.
+    static STUDIO: OnceLock<[DVec3; COUNT]> = OnceLock::new();
+    match environment {
+        Environment::Studio => *STUDIO.get_or_init(|| projected(environment)),
+        _ => projected(environment),
+    }
+}
+
+fn projected(environment: &Environment) -> [DVec3; COUNT] {
     let [columns, rows] = grid(environment);
     let row = |row: u32| {
         let v = (f64::from(row) + 0.5) / f64::from(rows);

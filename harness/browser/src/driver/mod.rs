@@ -63,8 +63,7 @@ impl Page {
         let mut pipe = Pipe::open(program)?;
         let mut outside = |method: &str, params: Value| pipe.call(None, method, &params, |_| {});
         let target = outside("Target.createTarget", json!({ "url": "about:blank" }))?;
-        let attached =
-            outside("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }))?;
+        let attached = outside("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }))?;
         let session = attached["sessionId"].as_str().ok_or_else(|| fault("no session"))?.to_owned();
         let mut page = Page { pipe, session, record: Record::default() };
         for domain in ["Page", "Runtime", "Network", "Log", "Inspector"] {
@@ -187,8 +186,7 @@ impl Page {
     /// Returns an error if the browser is gone.
     pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
         for (kind, [x, y]) in [("mousePressed", from), ("mouseMoved", to), ("mouseReleased", to)] {
-            let event =
-                json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+            let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
             self.call("Input.dispatchMouseEvent", event)?;
         }
         Ok(())

@@ -27,7 +27,9 @@ impl Record {
                 self.crashed = true;
                 self.problems.push("the page's process crashed".to_owned());
             }
-            "Runtime.exceptionThrown" => self.problems.push(format!("uncaught: {}", exception(&params["exceptionDetails"]))),
+            "Runtime.exceptionThrown" => {
+                self.problems.push(format!("uncaught: {}", exception(&params["exceptionDetails"])))
+            }
             "Runtime.consoleAPICalled" if params["type"] == "error" || params["type"] == "assert" => {
                 let words: Vec<String> = params["args"].as_array().into_iter().flatten().map(shown).collect();
                 self.problems.push(format!("console.error: {}", words.join(" ")));
@@ -91,7 +93,10 @@ mod tests {
         let mut record = Record::default();
         let mut note = |method: &str, params: Value| record.note(method, &params);
         note("Network.requestWillBeSent", json!({ "requestId": "1", "request": { "url": "file:///a.png" } }));
-        note("Network.responseReceived", json!({ "requestId": "1", "response": { "url": "file:///a.png", "status": 200 } }));
+        note(
+            "Network.responseReceived",
+            json!({ "requestId": "1", "response": { "url": "file:///a.png", "status": 200 } }),
+        );
         note("Runtime.consoleAPICalled", json!({ "type": "log", "args": [{ "value": "all is well" }] }));
         note("Network.loadingFailed", json!({ "requestId": "1", "errorText": "net::ERR_ABORTED", "canceled": true }));
         note("Network.loadingFailed", json!({ "requestId": "1", "errorText": "net::ERR_FILE_NOT_FOUND" }));
@@ -100,7 +105,11 @@ mod tests {
         note("Page.loadEventFired", json!({}));
         assert!(record.loaded && !record.crashed);
         assert_eq!(record.requests, ["file:///a.png"]);
-        let expected = ["request failed: file:///a.png: net::ERR_FILE_NOT_FOUND", "console.error: no 3", "request failed: http://b/: 404"];
+        let expected = [
+            "request failed: file:///a.png: net::ERR_FILE_NOT_FOUND",
+            "console.error: no 3",
+            "request failed: http://b/: 404",
+        ];
         assert_eq!(record.problems, expected);
     }
 }

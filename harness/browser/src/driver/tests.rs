@@ -37,7 +37,10 @@ fn opened() -> Option<(Page, tempfile::TempDir)> {
 fn a_page_answers() {
     let Some((mut page, folder)) = opened() else { return };
     assert_eq!(page.evaluate("document.title").expect("a value"), "A page");
-    assert_eq!(page.evaluate("Promise.resolve([1, { a: null }])").expect("a value"), serde_json::json!([1, { "a": null }]));
+    assert_eq!(
+        page.evaluate("Promise.resolve([1, { a: null }])").expect("a value"),
+        serde_json::json!([1, { "a": null }])
+    );
     assert_eq!(page.run("const one = await Promise.resolve(1); return one + 1;").expect("a value"), 2);
     assert!(page.evaluate("undefined").expect("nothing").is_null());
     let error = page.evaluate("nowhere.at.all").expect_err("thrown").to_string();
@@ -62,7 +65,8 @@ fn what_goes_wrong_is_seen() {
     let problems = page.problems().expect("a list").to_vec();
     assert!(problems.iter().any(|problem| problem.contains("nowhere.png")), "{problems:?}");
     page.evaluate("console.log('fine'); console.error('spilt', 3); 0").expect("said");
-    page.evaluate("setTimeout(() => { throw new Error('loose'); }); Promise.reject(new Error('unwanted')); 0").expect("set");
+    page.evaluate("setTimeout(() => { throw new Error('loose'); }); Promise.reject(new Error('unwanted')); 0")
+        .expect("set");
     let _ = page.evaluate("new Promise((done) => setTimeout(done, 100))").expect("a while");
     let all = page.problems().expect("a list").join("\n");
     for words in ["console.error: spilt 3", "loose", "unwanted"] {
@@ -87,7 +91,10 @@ fn keys_and_clicks_arrive() {
     assert_eq!(page.evaluate("document.activeElement.value").expect("a value"), "a/ b");
     page.press("Shift+Tab").expect("pressed");
     assert_eq!(page.evaluate("document.activeElement.id").expect("a value"), "first");
-    assert_eq!(page.evaluate("getComputedStyle(document.activeElement).outlineStyle !== 'none'").expect("a value"), true);
+    assert_eq!(
+        page.evaluate("getComputedStyle(document.activeElement).outlineStyle !== 'none'").expect("a value"),
+        true
+    );
     page.press("Enter").expect("pressed");
     assert_eq!(page.evaluate("first.textContent").expect("a value"), "clicked");
     assert_eq!(page.evaluate("keys.join()").expect("a value"), "Tab,Tab,a,/, ,b,Shift,Tab,Enter".replace("Shift,", ""));

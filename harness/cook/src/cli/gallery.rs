@@ -40,7 +40,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     sources.extend(pictures::walked(rendered.path()));
     let bar = progress::bar(1, "writing");
-    let site = Site { root: &root, adapter: gpu.describe(), pictures: sources, rustdoc: Some(rustdoc), device: Some(gpu) };
+    let site =
+        Site { root: &root, adapter: gpu.describe(), pictures: sources, rustdoc: Some(rustdoc), device: Some(gpu) };
     let index = gallery::write(&out, &site)?;
     bar.finish_and_clear();
     let index = index.canonicalize().unwrap_or(index);
@@ -73,9 +74,11 @@ fn rustdoc(root: &Path) -> Result<PathBuf, Failure> {
     let target = root.join("target/rustdoc");
     let mut command = Command::new(cargo);
     command.current_dir(root).args(["doc", "--no-deps", "--quiet", "--lib", "--target-dir"]).arg(&target);
-    command.args(cookbook::modules().iter().flat_map(|module| {
-        ["--package".to_owned(), ["lapidary-", &module.name.replace('_', "-")].concat()]
-    }));
+    command.args(
+        cookbook::modules()
+            .iter()
+            .flat_map(|module| ["--package".to_owned(), ["lapidary-", &module.name.replace('_', "-")].concat()]),
+    );
     command.args(["--package", "lapidary-wgsl"]).stdout(Stdio::null());
     match command.status() {
         Ok(status) if status.success() => Ok(target.join("doc")),

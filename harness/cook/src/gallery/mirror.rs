@@ -98,7 +98,8 @@ fn declaration(source: &str, keyword: &str, name: &str) -> Option<String> {
 /// the alignment of greatest similarity (Needleman and Wunsch).
 fn aligned(left: &str, right: &str) -> (String, String) {
     let (left, right): (Vec<&str>, Vec<&str>) = (left.lines().collect(), right.lines().collect());
-    let words: (Vec<_>, Vec<_>) = (left.iter().map(|l| words(l)).collect(), right.iter().map(|r| self::words(r)).collect());
+    let words: (Vec<_>, Vec<_>) =
+        (left.iter().map(|l| words(l)).collect(), right.iter().map(|r| self::words(r)).collect());
     let width = right.len() + 1;
     let mut best = vec![0.0_f32; (left.len() + 1) * width];
     for (row, one) in words.0.iter().enumerate() {

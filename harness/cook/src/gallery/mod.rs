@@ -175,7 +175,12 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     if let Some(gpu) = site.device {
         live::write(folder, gpu)?;
         for scene in &live::SCENES {
-            live.push(LivePage { scene: scene.scene, title: scene.title, body: live::section(scene)?, ladder: scene.ladder });
+            live.push(LivePage {
+                scene: scene.scene,
+                title: scene.title,
+                body: live::section(scene)?,
+                ladder: scene.ladder,
+            });
         }
     }
     rows::write(folder)?;

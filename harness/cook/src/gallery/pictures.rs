@@ -96,7 +96,8 @@ pub fn committed() -> Vec<Source> {
 
 /// Returns the titles and commands of the pictures by random walks, to be drawn from their committed radiance.
 pub fn walked(folder: &Path) -> Vec<Source> {
-    let of = |reference: &'static crate::snapshot::WalkedReference| Source {
+    let of = |reference: &'static crate::snapshot::WalkedReference| {
+        Source {
         name: [&reference.name(), "_walked"].concat(),
         folder: reference.technique.to_owned(),
         title: reference.title.to_owned(),
@@ -108,6 +109,7 @@ pub fn walked(folder: &Path) -> Vec<Source> {
         samples: [&reference.walks.to_string(), " walks a pixel"].concat(),
         file: folder.join([&reference.name(), "_walked.png"].concat()),
         source: None,
+    }
     };
     WALKED.iter().map(of).collect()
 }

@@ -92,11 +92,7 @@ impl Links for FileLinks<'_> {
 
     fn image(&self, target: &str) -> Option<Image> {
         let image = self.places.pictures.get(&self.path(target))?;
-        Some(Image {
-            file: ["../", &image.file].concat(),
-            thumb: ["../", &image.thumb].concat(),
-            ..image.clone()
-        })
+        Some(Image { file: ["../", &image.file].concat(), thumb: ["../", &image.thumb].concat(), ..image.clone() })
     }
 }
 

@@ -118,12 +118,18 @@ pub const TECHNIQUES: [Technique; 4] = [
         ladders: &["translucent"],
         guides: &[],
         modules: &["diffusion", "half_space", "voxelization", "reflective_shadow_map", "random_walk", "veins"],
-        recipes: &["diffusion_shading", "diffusion_cells", "diffusion_source", "diffusion_solve", "voxelize", "draw_light_map"],
+        recipes: &[
+            "diffusion_shading",
+            "diffusion_cells",
+            "diffusion_source",
+            "diffusion_solve",
+            "voxelize",
+            "draw_light_map",
+        ],
         effects: "",
         live: "dragon",
     },
 ];
-
 
 #[cfg(test)]
 mod tests {

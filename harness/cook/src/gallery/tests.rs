@@ -93,7 +93,12 @@ fn every_module_recipe_and_guide_has_a_page_with_its_text() {
         assert!(html(&["recipes/", recipe.name, ".html"].concat()).contains(&["source/recipe_", recipe.name].concat()));
     }
     let pictures = html("pictures.html");
-    for part in ["Step &lt;cut&gt;", "llvmpipe &lt;LLVM 15&gt;", "What &lt;b&gt;it&lt;/b&gt; shows, by <code>", "&amp;&amp; true"] {
+    for part in [
+        "Step &lt;cut&gt;",
+        "llvmpipe &lt;LLVM 15&gt;",
+        "What &lt;b&gt;it&lt;/b&gt; shows, by <code>",
+        "&amp;&amp; true",
+    ] {
         assert!(pictures.contains(part), "{part}");
     }
 }
@@ -117,7 +122,8 @@ fn a_page_is_small_and_fetches_nothing_from_elsewhere() {
 fn the_same_site_gives_the_same_bytes() {
     let around = tempfile::tempdir().expect("temporary folder");
     let pictures = [source(around.path(), "prism")];
-    let bytes = || pages_of(&pictures, around.path()).expect("made").into_iter().map(|(_, html)| html).collect::<Vec<_>>();
+    let bytes =
+        || pages_of(&pictures, around.path()).expect("made").into_iter().map(|(_, html)| html).collect::<Vec<_>>();
     assert_eq!(bytes(), bytes());
 }
 
@@ -128,8 +134,7 @@ fn a_missing_picture_is_named_and_leaves_nothing() {
     fs::remove_file(&lost.file).expect("there");
     lost.file = around.path().join("lost.png");
     let root = repository::place();
-    let site =
-        Site { root: &root, adapter: String::new(), pictures: vec![lost], rustdoc: None, device: None };
+    let site = Site { root: &root, adapter: String::new(), pictures: vec![lost], rustdoc: None, device: None };
     let error = write(&around.path().join("out"), &site).expect_err("no such file").to_string();
     assert!(error.contains("octahedron") && error.contains("lost.png") && error.contains("./cook render"), "{error}");
     assert_eq!(fs::read_dir(around.path()).expect("readable").count(), 0, "nothing is left");

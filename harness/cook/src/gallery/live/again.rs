@@ -13,7 +13,11 @@ struct Uses {
 /// Returns, for each of these resources of a frame's description, the places of the passes that must run again when it
 /// was written: those that read it, those after them that use what they change, and those before them that fill what
 /// they read and what is changed further on.
-pub fn again(document: &Value, texts: &[String], resources: impl IntoIterator<Item = u64>) -> BTreeMap<u64, Vec<usize>> {
+pub fn again(
+    document: &Value,
+    texts: &[String],
+    resources: impl IntoIterator<Item = u64>,
+) -> BTreeMap<u64, Vec<usize>> {
     let uses: Vec<Uses> = list(&document["passes"]).map(|pass| uses(document, texts, pass)).collect();
     resources.into_iter().map(|resource| (resource, of_resource(&uses, resource))).collect()
 }
@@ -26,7 +30,8 @@ fn of_resource(uses: &[Uses], resource: u64) -> Vec<usize> {
         for (other, of) in uses.iter().enumerate() {
             let follows = other > place && !(writes.is_disjoint(&of.reads) && writes.is_disjoint(&of.writes));
             // What it reads is, after a whole frame, what the last pass left there.
-            let is_refilled = |filled: &u64| reads.contains(filled) && uses[place..].iter().any(|of| of.writes.contains(filled));
+            let is_refilled =
+                |filled: &u64| reads.contains(filled) && uses[place..].iter().any(|of| of.writes.contains(filled));
             let refills = other < place && of.writes.iter().any(is_refilled);
             if (follows || refills) && again.insert(other) {
                 open.push(other);
@@ -46,7 +51,9 @@ fn uses(document: &Value, texts: &[String], pass: &Value) -> Uses {
         uses.reads.extend(call["indirect"].as_u64());
         let text = call["pipeline"].as_u64().and_then(|place| texts.get(place as usize)).map_or("", String::as_str);
         let changed = written(text);
-        for group in list(&call["groups"]).filter_map(Value::as_u64).map(|place| &document["bind_groups"][place as usize]) {
+        for group in
+            list(&call["groups"]).filter_map(Value::as_u64).map(|place| &document["bind_groups"][place as usize])
+        {
             for entry in list(&group["entries"]) {
                 let Some(resource) = entry["resource"].as_u64() else { continue };
                 uses.reads.insert(resource);
@@ -96,9 +103,7 @@ mod tests {
 
     /// 0 and 1 are given, 2 is summed up by two passes after it was cleared, and drawn from 1 and 2.
     fn document() -> Value {
-        let group = |from: u64, to: u64| {
-            json!({"group": 0, "entries": [{"binding": 0, "resource": from}, {"binding": 1, "resource": to}]})
-        };
+        let group = |from: u64, to: u64| json!({"group": 0, "entries": [{"binding": 0, "resource": from}, {"binding": 1, "resource": to}]});
         let pass = |group: u64| json!({"kind": "compute", "dispatches": [{"pipeline": 0, "groups": [group], "workgroups": [1, 1, 1]}]});
         json!({
             "bind_groups": [group(0, 2), group(1, 2), {"group": 0, "entries": [{"binding": 0, "resource": 3}, {"binding": 2, "resource": 2}]}],

@@ -159,19 +159,24 @@ fn rung(
     store: &mut Store,
     found: &mut Found,
 ) -> Result<Rung, LiveError> {
-    let live = super::SCENES.iter().find(|of| of.scene == live.scene).ok_or_else(|| LiveError::Rung(name.to_owned()))?;
+    let live =
+        super::SCENES.iter().find(|of| of.scene == live.scene).ok_or_else(|| LiveError::Rung(name.to_owned()))?;
     let toggles = applicable(live, scene, name)?;
     let base_settings = settings(live, name, |toggle| toggle.on)?;
     let base = make(scene, &base_settings)?;
     let moves = moves(live, scene, &base_settings, &base, found)?;
     let mut moved: BTreeSet<&str> = moves.iter().flat_map(|of| &of.at).map(|place| place.buffer.as_str()).collect();
     moved.extend(["view", "environment map"]);
-    let choices: Vec<(usize, bool)> =
-        (0..1 << toggles.len()).flat_map(|set| [(set, false), (set, true)]).filter(|(_, map)| live.environment || !map).collect();
+    let choices: Vec<(usize, bool)> = (0..1 << toggles.len())
+        .flat_map(|set| [(set, false), (set, true)])
+        .filter(|(_, map)| live.environment || !map)
+        .collect();
     let made: Vec<(String, Made)> = choices
         .into_par_iter()
         .map(|(set, map)| {
-            let has = |toggle: &Toggle| toggles.iter().position(|of| of.effect == toggle.effect).map(|place| set >> place & 1 == 1);
+            let has = |toggle: &Toggle| {
+                toggles.iter().position(|of| of.effect == toggle.effect).map(|place| set >> place & 1 == 1)
+            };
             let mut settings = settings(live, name, |toggle| has(toggle).unwrap_or(toggle.on))?;
             if map {
                 settings.environment = gray();
@@ -211,7 +216,8 @@ fn make(scene: &Scene, settings: &Settings) -> Result<Made, LiveError> {
 /// The recipe of the first draw of the pass that draws the scene.
 fn recipe(document: &Value) -> String {
     let passes = document["passes"].as_array().into_iter().flatten();
-    let mut drawn = passes.filter(|pass| pass["name"] == "scene").filter_map(|pass| pass["draws"][0]["pipeline"].as_u64());
+    let mut drawn =
+        passes.filter(|pass| pass["name"] == "scene").filter_map(|pass| pass["draws"][0]["pipeline"].as_u64());
     let pipeline = drawn.next().map_or(&Value::Null, |place| &document["pipelines"][place as usize]);
     pipeline["recipe"].as_str().unwrap_or_default().to_owned()
 }
@@ -309,7 +315,11 @@ impl Sliding<'_> {
     }
 
     /// The fields that differ in the frame of a step.
-    fn frame(&self, change: fn(&mut Scene, &mut Settings, f32), step: usize) -> Result<Vec<(Place, Vec<f32>)>, LiveError> {
+    fn frame(
+        &self,
+        change: fn(&mut Scene, &mut Settings, f32),
+        step: usize,
+    ) -> Result<Vec<(Place, Vec<f32>)>, LiveError> {
         let (mut scene, mut settings) = (self.scene.clone(), self.settings.clone());
         change(&mut scene, &mut settings, self.values[step]);
         let next = lapidary_render::frame(None, &scene, &settings)?;

@@ -182,7 +182,8 @@ pub fn difference(frame: &Frame, next: &Frame) -> Option<String> {
     if counts(frame) != counts(next) {
         return Some(format!("{:?} resources and pipelines become {:?}", counts(frame), counts(next)));
     }
-    let compiled = |of: &Pipeline| (of.shader.recipe().to_owned(), of.shader.entries().to_vec(), of.shader.overrides().to_vec());
+    let compiled =
+        |of: &Pipeline| (of.shader.recipe().to_owned(), of.shader.entries().to_vec(), of.shader.overrides().to_vec());
     for (one, other) in frame.pipelines.iter().zip(&next.pipelines) {
         if one.kind != other.kind || compiled(one) != compiled(other) {
             return Some(format!("pipeline `{}`", one.name));

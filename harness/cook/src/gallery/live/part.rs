@@ -59,11 +59,8 @@ pub fn section(live: &LiveScene) -> Result<Markup, LiveError> {
         let (name, label, unit) = (slider.name, slider.label, slider.unit);
         SliderRow { name, label, unit, last: values.len() - 1, start, value: shown(values[start]) }
     });
-    let toggle = |toggle: &super::scenes::Toggle| ToggleRow {
-        name: toggle.effect.name(),
-        label: toggle.label,
-        on: toggle.on,
-    };
+    let toggle =
+        |toggle: &super::scenes::Toggle| ToggleRow { name: toggle.effect.name(), label: toggle.label, on: toggle.on };
     let values = Shown {
         scene: live.scene,
         summary: live.summary,

@@ -58,7 +58,9 @@ impl Slider {
         let mut values: Vec<f32> = (0..self.steps).map(step).collect();
         // Steps next to the start would look the same.
         let near = 0.3 * (greatest - least) / self.steps as f32;
-        values.retain(|value| if self.logarithmic { (value / start).ln().abs() > 0.02 } else { (value - start).abs() > near });
+        values.retain(
+            |value| if self.logarithmic { (value / start).ln().abs() > 0.02 } else { (value - start).abs() > near },
+        );
         values.push(start);
         values.sort_by(f32::total_cmp);
         let place = values.iter().position(|value| *value == start).unwrap_or_default();

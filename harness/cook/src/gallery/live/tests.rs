@@ -55,7 +55,8 @@ fn is_whole(name: &str) {
             }
             // What the camera changes is the scene's pass and what follows, not what was solved before.
             let view = resources.iter().position(|row| row["name"] == "view").expect("a view").to_string();
-            let again: Vec<u64> = document["again"][&view].as_array().expect("passes").iter().filter_map(Value::as_u64).collect();
+            let again: Vec<u64> =
+                document["again"][&view].as_array().expect("passes").iter().filter_map(Value::as_u64).collect();
             let passes = document["passes"].as_array().expect("passes");
             let first = passes.iter().position(|pass| pass["name"] == "scene").expect("a scene's pass") as u64;
             assert_eq!(again.first(), Some(&first), "{rung} {effects}");

@@ -30,9 +30,10 @@ struct Values<'a> {
 pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
     let path = ["recipes/", recipe.name, ".html"].concat();
     let file = ["docs/recipes/", recipe.name, ".md"].concat();
-    let host = parts.docs.get(&file).map_or_else(markdown::Page::default, |text| {
-        markdown::page(text, &parts.places.of(&file))
-    });
+    let host = parts
+        .docs
+        .get(&file)
+        .map_or_else(markdown::Page::default, |text| markdown::page(text, &parts.places.of(&file)));
     let header = parse_header(recipe.source).ok();
     let purpose = header.as_ref().map_or("", |header| header.purpose.as_str());
     let whole = super::super::source_of_recipe(recipe);

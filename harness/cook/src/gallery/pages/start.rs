@@ -46,7 +46,8 @@ pub fn page(parts: &Parts<'_>) -> Page {
     };
     let body = templates::render("start.html", values);
     let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";
-    let mut page = Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
+    let mut page =
+        Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
     page.entries = vec![super::Entry::page("Start", &page.path, &text::plain(description))];
     page
 }

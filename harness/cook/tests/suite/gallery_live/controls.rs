@@ -23,7 +23,7 @@ fn every_slider_changes_the_picture() {
         for name in names(&mut page, "sliders") {
             for end in ["0", "input.max"] {
                 let moved = format!(
-                    "const input = document.querySelector('.live [name=\"{name}\"]');
+                    "const input = document.querySelector('#live-{name}');
                     input.value = {end};
                     input.dispatchEvent(new Event('input', {{ bubbles: true }}));
                     await gallery.live.set({{}});
@@ -81,7 +81,7 @@ fn an_effect_is_another_shader() {
         assert!(!toggles.is_empty(), "{scene}");
         let picture = shown(&mut page);
         for name in toggles.iter().filter_map(|name| name.as_str()) {
-            page.click(&format!(".live [name=\"{name}\"]")).expect("a box");
+            page.click(&format!(".live [data-toggle][name=\"{name}\"]")).expect("a box");
             page.run("await gallery.live.set({});").expect("drawn");
             let after = copied(&mut page);
             lapidary_specialise::parse(&after, "the shader").unwrap_or_else(|error| panic!("{scene} {name}: {error}"));
@@ -89,7 +89,7 @@ fn an_effect_is_another_shader() {
             println!("{scene} {name}: {} bytes, {} before; {share:.4} of the picture", after.len(), before.len());
             assert_ne!(before, after, "{scene}: {name} leaves the shader as it was");
             assert!(share > LEAST, "{scene}: {name} changes {share} of the picture");
-            page.click(&format!(".live [name=\"{name}\"]")).expect("a box");
+            page.click(&format!(".live [data-toggle][name=\"{name}\"]")).expect("a box");
             page.run("await gallery.live.set({});").expect("drawn");
         }
         assert_eq!(differing(&picture, &shown(&mut page)), 0.0, "{scene}");
@@ -103,13 +103,14 @@ fn the_address_holds_the_state() {
     assert_eq!(page.evaluate("location.hash").expect("an address"), "");
     set(
         &mut page,
-        "Object.assign(state, { other: 'surface', wipe: 70, polar: 55, azimuth: -30 });
-        state.steps.index = 3; state.steps.exposure = 20; state.on.dispersion = false",
+        "Object.assign(state, { other: 'surface', wipe: 70, polar: 55, azimuth: -30, distance: 4.5 });
+        Object.assign(state.steps, { index: 3, exposure: 20, dispersion: 2 }); state.on.dispersion = false",
     );
-    let (hash, state) = (page.evaluate("location.hash").expect("a hash"), page.evaluate("gallery.live.state").expect("a state"));
+    let (hash, state) =
+        (page.evaluate("location.hash").expect("a hash"), page.evaluate("gallery.live.state").expect("a state"));
     let picture = shown(&mut page);
     let hash = hash.as_str().expect("a text").trim_start_matches('#').to_owned();
-    for word in ["index=", "other=surface", "wipe=70", "view=55", "dispersion=off"] {
+    for word in ["index=", "other=surface", "wipe=70", "view=55"] {
         assert!(hash.contains(word), "{word}: {hash}");
     }
     begin(&mut page, "brilliant", &hash);
@@ -125,7 +126,10 @@ fn the_address_holds_the_state() {
     page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("started");
     let wipe = page.evaluate("gallery.live.state.wipe").expect("a state");
     assert_eq!(wipe, 100);
-    assert_eq!(page.evaluate("gallery.live.state.rung === Object.keys(gallery.live.manifest.rungs)[0]").expect("a state"), true);
+    assert_eq!(
+        page.evaluate("gallery.live.state.rung === Object.keys(gallery.live.manifest.rungs)[0]").expect("a state"),
+        true
+    );
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 

@@ -3,6 +3,7 @@
 
 use super::{Shown, running, set, shown};
 use crate::gpu;
+use glam::Vec3;
 use lapidary_cook::gallery::live::{LiveScene, SCENES, SIDE, settings};
 use lapidary_render::{Picture, render};
 use lapidary_scene::Scene;
@@ -95,17 +96,25 @@ fn a_wrong_uniform_is_seen() {
     assert!(apart(&shown(&mut page), &right).holds(), "not as before");
 }
 
-/// A turned stone is the renderer's, turned.
+/// A turned stone is the renderer's, seen from there.
 #[test]
 fn the_eye_goes_where_the_renderer_puts_it() {
     let Some(mut page) = running("brilliant", "") else { return };
     let live = live("brilliant");
     let scene = Scene::named("brilliant").expect("built in");
-    for (polar, azimuth) in [(60.0, 0.0), (90.0, -120.0), (5.0, 40.0)] {
-        set(&mut page, &format!("state.polar = {polar}; state.azimuth = {azimuth}"));
-        let expected = drawn(live, live.rungs[0], &scene.clone().seen_from(polar, azimuth));
-        let apart = apart(&shown(&mut page), &expected);
-        println!("{polar} {azimuth}: {apart:?}");
-        assert!(apart.holds(), "{polar} {azimuth}: {apart:?}");
+    let usual = scene.camera.eye.distance(scene.camera.target);
+    for (polar, azimuth, share) in [(60.0f32, 0.0f32, 1.0), (90.0, -120.0, 0.7), (5.0, 40.0, 2.0)] {
+        let distance = share * usual;
+        set(
+            &mut page,
+            &format!("Object.assign(state, {{ polar: {polar}, azimuth: {azimuth}, distance: {distance} }})"),
+        );
+        let (across, up) = polar.to_radians().sin_cos();
+        let (right, front) = azimuth.to_radians().sin_cos();
+        let mut turned = scene.clone();
+        turned.camera.eye = scene.camera.target + distance * Vec3::new(across * right, up, across * front);
+        let apart = apart(&shown(&mut page), &drawn(live, live.rungs[0], &turned));
+        println!("{polar} {azimuth} {share}: {apart:?}");
+        assert!(apart.holds(), "{polar} {azimuth} {share}: {apart:?}");
     }
 }

@@ -30,7 +30,8 @@ pub(super) const WIDER: &str = "(() => {
 })()";
 
 /// Pictures that were loaded and are none.
-pub(super) const BROKEN: &str = "[...document.images].filter((image) => image.complete && image.src && image.offsetParent && !image.naturalWidth)
+pub(super) const BROKEN: &str =
+    "[...document.images].filter((image) => image.complete && image.src && image.offsetParent && !image.naturalWidth)
     .map((image) => image.getAttribute('src'))";
 
 /// Starts a browser; nothing without Chromium.

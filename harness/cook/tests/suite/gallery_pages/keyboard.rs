@@ -35,7 +35,11 @@ fn tab_reaches_everything_and_shows_where_it_is() {
     let Some(mut page) = opened("modules/refraction.html") else { return };
     page.press("Tab").expect("pressed");
     let first = focused(&mut page);
-    assert_eq!((&first["name"], &first["inside"], &first["visible"]), (&"skip".into(), &true.into(), &true.into()), "{first}");
+    assert_eq!(
+        (&first["name"], &first["inside"], &first["visible"]),
+        (&"skip".into(), &true.into(), &true.into()),
+        "{first}"
+    );
     let mut reached = BTreeSet::new();
     for _ in 0..150 {
         let at = focused(&mut page);
@@ -64,18 +68,22 @@ fn the_skip_link_skips() {
 
 #[test]
 fn a_function_is_found_without_a_mouse() {
-    for (from, words, function, module) in
-        [("index.html", "refraction_refl", "refraction_reflect", "refraction"), ("guides/glossary.html", "fresnel schlick", "fresnel_schlick", "fresnel")]
-    {
+    for (from, words, function, module) in [
+        ("index.html", "refraction_refl", "refraction_reflect", "refraction"),
+        ("guides/glossary.html", "fresnel schlick", "fresnel_schlick", "fresnel"),
+    ] {
         let Some(mut page) = opened(from) else { return };
         page.press("/").expect("pressed");
         page.wait_for("document.activeElement.matches('input')", SOON).expect("a field for the words");
         page.type_text(words).expect("typed");
         assert_eq!(page.evaluate("document.activeElement.value").expect("a value"), words);
-        let found = format!("[...document.querySelectorAll('dialog[open] a, [role=dialog] a, [role=option]')].some((link) => link.outerHTML.includes('modules/{module}.html#'))");
+        let found = format!(
+            "[...document.querySelectorAll('dialog[open] a, [role=dialog] a, [role=option]')].some((link) => link.outerHTML.includes('modules/{module}.html#'))"
+        );
         page.wait_for(&found, SOON).unwrap_or_else(|error| panic!("{words}: {error}"));
         page.press("Enter").expect("pressed");
-        let arrived = format!("location.pathname.endsWith('modules/{module}.html') && location.hash.startsWith('#{function}')");
+        let arrived =
+            format!("location.pathname.endsWith('modules/{module}.html') && location.hash.startsWith('#{function}')");
         page.wait_for(&arrived, SOON).unwrap_or_else(|error| panic!("{words}: {error}"));
         let there = page.wait_for("document.getElementById(location.hash.slice(1)) !== null", SOON);
         there.unwrap_or_else(|error| panic!("{words}: {error}"));
@@ -139,11 +147,14 @@ fn pictures_open_go_on_and_close_by_keys() {
         )
     };
     page.wait_for(&shown(0), SOON).expect("a large picture");
-    assert!(page.evaluate("location.pathname").expect("a value").as_str().is_some_and(|path| path.ends_with("gems.html")));
+    assert!(
+        page.evaluate("location.pathname").expect("a value").as_str().is_some_and(|path| path.ends_with("gems.html"))
+    );
     page.press("ArrowRight").expect("pressed");
     page.wait_for(&shown(1), SOON).expect("the next picture");
     // Its caption says what drew it, and how to draw it again.
-    let caption = page.evaluate("document.querySelector('dialog[open] .lightbox-caption').textContent").expect("a caption");
+    let caption =
+        page.evaluate("document.querySelector('dialog[open] .lightbox-caption').textContent").expect("a caption");
     assert!(caption.as_str().is_some_and(|caption| caption.contains("./cook")), "{caption}");
     page.press("ArrowLeft").expect("pressed");
     page.wait_for(&shown(0), SOON).expect("back again");

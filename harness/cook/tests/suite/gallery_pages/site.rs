@@ -42,7 +42,8 @@ pub(crate) fn site() -> &'static Site {
 
 fn build() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
-    let answer = cook(Path::new(env!("CARGO_MANIFEST_DIR")), &["gallery".as_ref(), "--out".as_ref(), folder.as_os_str()]);
+    let answer =
+        cook(Path::new(env!("CARGO_MANIFEST_DIR")), &["gallery".as_ref(), "--out".as_ref(), folder.as_os_str()]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     folder
 }
