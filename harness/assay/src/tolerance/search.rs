@@ -133,7 +133,7 @@ impl<'a> Search<'a> {
     pub fn look_everywhere(&mut self, inputs: &InputBox, floats: &[usize], centre: &[f64]) {
         let effort = if self.places.is_empty() { Effort::Corners } else { Effort::Boundaries };
         self.corners(effort, inputs, |_| false);
-        self.from_ends(floats, |search, best, what| {
+        self.go_on_from_ends(floats, |search, best, what| {
             let corner = search.downhill(inputs, &best, what);
             search.visit(&corner);
         });
@@ -142,12 +142,12 @@ impl<'a> Search<'a> {
             for number in 0..PLACES_WHERE_IT_BENDS {
                 self.visit(&inputs.place(number));
             }
-            self.from_ends(floats, |search, best, what| search.descend(inputs, best, what, &|_| false));
+            self.go_on_from_ends(floats, |search, best, what| search.descend(inputs, best, what, &|_| false));
         }
     }
 
     /// Goes on from the best place so far of the least and of the greatest of each of these results.
-    fn from_ends(&mut self, floats: &[usize], go_on: impl Fn(&mut Self, Vec<f64>, (usize, f64))) {
+    fn go_on_from_ends(&mut self, floats: &[usize], go_on: impl Fn(&mut Self, Vec<f64>, (usize, f64))) {
         if self.spread().is_none() {
             return;
         }
@@ -163,8 +163,9 @@ impl<'a> Search<'a> {
     fn bends(&self, floats: &[usize], centre: &[f64]) -> bool {
         floats.iter().any(|index| {
             let (low, high) = (self.spread.low[*index], self.spread.high[*index]);
-            // Written so that a range that is not found bends.
-            !((centre[*index] - 0.5 * (low + high)).abs() <= LINEAR * (high - low))
+            let beside = (centre[*index] - 0.5 * (low + high)).abs();
+            // A range that is not found bends.
+            beside.is_nan() || beside > LINEAR * (high - low)
         })
     }
 

@@ -153,7 +153,7 @@ fn aligned(left: &str, right: &str) -> (String, String) {
 fn words(line: &str) -> Vec<&str> {
     line.split(|c: char| !c.is_alphanumeric() && c != '.' && c != '_')
         .map(|word| word.trim_matches('.').trim_end_matches('f'))
-        .flat_map(|word| word.split(|c: char| c == '.' || c == '_'))
+        .flat_map(|word| word.split(['.', '_']))
         .filter(|word| !word.is_empty())
         .collect()
 }

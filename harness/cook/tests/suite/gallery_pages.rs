@@ -201,52 +201,74 @@ fn pages_say_what_they_are() {
     }
 }
 
-/// Texts of WGSL with a button that copies them, by their file's name.
-fn listings(page: &SitePage) -> Vec<(String, String)> {
-    let mut found = Vec::new();
+/// A text of WGSL with a button that copies it.
+struct Listing {
+    /// Its file's name.
+    file: String,
+    /// The text in the page, or the one that the button loads.
+    text: String,
+}
+
+/// Returns the listings of a page.
+fn listings(site: &Site, page: &SitePage) -> Vec<Listing> {
     let class = |attributes: &BTreeMap<String, String>, wanted: &str| {
         attributes.get("class").is_some_and(|names| names.split_whitespace().any(|name| name == wanted))
     };
-    let mut pieces = page.pieces.iter().peekable();
-    let mut file = String::new();
-    while let Some(piece) = pieces.next() {
-        let Piece::Start(name, attributes) = piece else { continue };
-        if class(attributes, "file") {
-            if let Some(Piece::Text(text)) = pieces.peek() {
-                file.clone_from(text);
-            }
-        } else if name == "pre" && file.ends_with(".wgsl") {
-            let mut text = String::new();
-            for piece in pieces.by_ref() {
-                match piece {
-                    Piece::Text(more) => text.push_str(more),
-                    Piece::End(name) if name == "pre" => break,
-                    _ => {}
-                }
-            }
-            found.push((std::mem::take(&mut file), text));
+    let is_source = |piece: &Piece| matches!(piece, Piece::Start(_, attributes) if class(attributes, "source"));
+    let starts: Vec<usize> = (0..page.pieces.len()).filter(|at| is_source(&page.pieces[*at])).collect();
+    let mut found = Vec::new();
+    for (nth, start) in starts.iter().enumerate() {
+        let Piece::Start(_, attributes) = &page.pieces[*start] else { unreachable!("a start") };
+        // Listings do not stand in one another.
+        let within = &page.pieces[*start..starts.get(nth + 1).copied().unwrap_or(page.pieces.len())];
+        let at = |wanted: &str| {
+            within.iter().position(|piece| matches!(piece, Piece::Start(name, of) if name == wanted || class(of, wanted)))
+        };
+        let file = at("file").map(|at| text_until(&within[at..], "span")).unwrap_or_default();
+        if !class(attributes, "copyable") || !file.ends_with(".wgsl") {
+            continue;
         }
+        let text = match attributes.get("data-source") {
+            Some(name) => delivered(site, name),
+            None => text_until(&within[at("pre").unwrap_or_else(|| panic!("{file}: no text"))..], "pre"),
+        };
+        found.push(Listing { file, text });
     }
     found
+}
+
+/// The text up to the end of an element.
+fn text_until(pieces: &[Piece], end: &str) -> String {
+    let within = pieces.iter().take_while(|piece| !matches!(piece, Piece::End(name) if name == end));
+    within.filter_map(|piece| if let Piece::Text(text) = piece { Some(text.as_str()) } else { None }).collect()
+}
+
+/// The text that a script of data delivers.
+fn delivered(site: &Site, name: &str) -> String {
+    let path = site.folder.join(format!("data/{name}.js"));
+    let script = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let value = script.trim().strip_prefix(&format!("gallery.deliver(\"{name}\",")).and_then(|rest| rest.strip_suffix(");"));
+    serde_json::from_str(value.unwrap_or_else(|| panic!("{name}: another call"))).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// What a copy button puts into the clipboard is complete WGSL; a test below holds the clipboard to the page.
 #[test]
 fn copied_listings_compile() {
-    let mut count = 0;
-    for (path, page) in &site().pages {
-        for (file, text) in listings(page) {
-            let text = text.strip_prefix('\n').unwrap_or(&text);
+    let (site, mut count) = (site(), 0);
+    for (path, page) in &site.pages {
+        for Listing { file, text } in listings(site, page) {
             // A naive form stands below its module.
             let module = file.strip_prefix("naive/").and_then(|name| cookbook::module(name.trim_end_matches(".wgsl")));
             let whole = format!("{}{text}", module.map_or("", |module| module.source));
             if let Err(error) = lapidary_specialise::parse(&whole, &file) {
                 panic!("{path}: {file}: {error}");
             }
+            assert!(text.contains("fn "), "{path}: {file}: {text}");
             count += 1;
         }
     }
-    assert!(count >= cookbook::modules().len(), "{count} listings");
+    let least = cookbook::modules().len() + lapidary_wgsl::RECIPES.len();
+    assert!(count >= least, "{count} listings, of {least} modules and recipes");
 }
 
 /// A handful of pages: one of each folder, and some more by the suite's seed.
@@ -298,21 +320,21 @@ fn pages_are_quiet_and_fit_a_phone() {
 fn a_copy_button_copies_what_is_shown() {
     let Some(mut page) = opened("modules/refraction.html") else { return };
     page.grant_clipboard().expect("granted");
-    let file = "refraction.wgsl";
-    let (_, shown) = listings(&site().pages["modules/refraction.html"])
-        .into_iter()
-        .find(|(name, _)| name.ends_with(file))
-        .expect("a listing");
-    page.run(
-        "const source = [...document.querySelectorAll('.copyable')]
-            .find((part) => part.querySelector('.file')?.textContent.endsWith('refraction.wgsl'));
-        source.querySelector('button.copy').id = 'the-button';",
-    )
-    .expect("the listing's button");
+    let all = listings(site(), &site().pages["modules/refraction.html"]);
+    let listing = all.into_iter().find(|listing| listing.file == "refraction.wgsl").expect("a listing");
+    let shown = page
+        .run(
+            "const source = [...document.querySelectorAll('.source.copyable')]
+                .find((part) => part.querySelector('.file').textContent === 'refraction.wgsl');
+            source.querySelector('button.copy').id = 'the-button';
+            return source.querySelector('pre').textContent;",
+        )
+        .expect("the listing's button");
     page.click("#the-button").expect("clicked");
     let copied = page.wait_for("navigator.clipboard.readText()", browser::SOON).expect("a clipboard");
     let copied = copied.as_str().expect("a text");
-    assert_eq!(copied.trim_end(), shown.trim());
+    assert_eq!(copied.trim(), listing.text.trim());
+    assert_eq!(copied.trim(), shown.as_str().expect("a text").trim());
     // It says so, to eyes and to screen readers.
     let said = page.wait_for("document.querySelector('#status').textContent", browser::SOON).expect("words");
     assert!(said.as_str().is_some_and(|said| said.to_lowercase().contains("cop")), "{said}");

@@ -68,7 +68,7 @@ fn an_effect_is_another_shader() {
     for scene in some_scenes() {
         let Some(mut page) = running(scene, "") else { return };
         page.grant_clipboard().expect("granted");
-        let mut copied = |page: &mut lapidary_browser::Page| {
+        let copied = |page: &mut lapidary_browser::Page| {
             page.run("await navigator.clipboard.writeText('')").expect("emptied");
             page.click("[data-do=shader]").expect("a button");
             let text = page.wait_for("navigator.clipboard.readText()", SOON).expect("a text");

@@ -112,6 +112,7 @@ fn the_eye_goes_where_the_renderer_puts_it() {
         let (across, up) = polar.to_radians().sin_cos();
         let (right, front) = azimuth.to_radians().sin_cos();
         let mut turned = scene.clone();
+        turned.camera.up = Vec3::Y;
         turned.camera.eye = scene.camera.target + distance * Vec3::new(across * right, up, across * front);
         let apart = apart(&shown(&mut page), &drawn(live, live.rungs[0], &turned));
         println!("{polar} {azimuth} {share}: {apart:?}");
