@@ -287,7 +287,7 @@ impl Scene {
         self.push(Shape::Dot { at: Point(at), radius: Number(radius), paint })
     }
 
-    /// Writes words, with `$symbols$` between dollars; see [`label::runs`]. `at` is halfway up the small letters.
+    /// Writes words, with `$symbols$` between dollars. `at` is halfway up the small letters.
     pub fn note(&mut self, at: DVec2, anchor: Anchor, paint: Paint, text: &str) -> &mut Self {
         self.text(at, anchor, NOTE, paint, text)
     }

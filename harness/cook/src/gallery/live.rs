@@ -1,6 +1,6 @@
 //! The live pages: scenes drawn in the visitor's browser, by the very frames of `cook frame`.
 //!
-//! [`write`] exports, for each rung of each scene and each choice of its effects, a frame, and for each slider the
+//! [`write()`] exports, for each rung of each scene and each choice of its effects, a frame, and for each slider the
 //! values of all fields that it moves, as the renderer itself makes them. A page knows buffers, fields and passes; all
 //! that is of a technique is data.
 

@@ -156,7 +156,7 @@ pub fn write_of(folder: &Path, selects: impl Fn(&Module) -> bool + Sync) -> Resu
 }
 
 /// Returns the editor of a module's functions, or `None` if none of them has a bound. Its page needs
-/// `assets/check.css`, `assets/check.js` and the files of [`write`].
+/// `assets/check.css`, `assets/check.js` and the files of [`write()`].
 pub fn editor(module: &Module) -> Option<Markup> {
     #[derive(Serialize)]
     struct Function<'a> {

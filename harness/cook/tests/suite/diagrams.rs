@@ -198,7 +198,8 @@ fn on_the_wall(scene: &Scene) -> Result<(), String> {
         Shape::Line { points, pen, head, .. } if pen.width == "wide" && head.is_empty() => Some(points),
         _ => None,
     });
-    let [from, to] = wide.next_back().map(|points| [points[0], points[1]].map(|point| point.0.to_array())).expect("a wall");
+    let [from, to] =
+        wide.next_back().map(|points| [points[0], points[1]].map(|point| point.0.to_array())).expect("a wall");
     near(distance(places(scene, "through")[0], from, to), 0.0, 0.1)
 }
 

@@ -222,7 +222,9 @@ fn listings(site: &Site, page: &SitePage) -> Vec<Listing> {
         // Listings do not stand in one another.
         let within = &page.pieces[*start..starts.get(nth + 1).copied().unwrap_or(page.pieces.len())];
         let at = |wanted: &str| {
-            within.iter().position(|piece| matches!(piece, Piece::Start(name, of) if name == wanted || class(of, wanted)))
+            within
+                .iter()
+                .position(|piece| matches!(piece, Piece::Start(name, of) if name == wanted || class(of, wanted)))
         };
         let file = at("file").map(|at| text_until(&within[at..], "span")).unwrap_or_default();
         if !class(attributes, "copyable") || !file.ends_with(".wgsl") {
@@ -247,8 +249,10 @@ fn text_until(pieces: &[Piece], end: &str) -> String {
 fn delivered(site: &Site, name: &str) -> String {
     let path = site.folder.join(format!("data/{name}.js"));
     let script = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let value = script.trim().strip_prefix(&format!("gallery.deliver(\"{name}\",")).and_then(|rest| rest.strip_suffix(");"));
-    serde_json::from_str(value.unwrap_or_else(|| panic!("{name}: another call"))).unwrap_or_else(|error| panic!("{name}: {error}"))
+    let value =
+        script.trim().strip_prefix(&format!("gallery.deliver(\"{name}\",")).and_then(|rest| rest.strip_suffix(");"));
+    serde_json::from_str(value.unwrap_or_else(|| panic!("{name}: another call")))
+        .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// What a copy button puts into the clipboard is complete WGSL; a test below holds the clipboard to the page.
