@@ -10,6 +10,9 @@ import { serve } from './server.js';
 /** Widths in CSS pixels: a phone's and a desktop's. */
 const WIDTHS = [390, 1440];
 
+/** A layout shift above this is shown with what moved: Lighthouse's own limit of what is good. */
+const MOST_SHIFT = 0.1;
+
 /** A page of each kind, the first that is there. */
 const KINDS = [
   ['index.html'],
@@ -53,6 +56,10 @@ async function judged(browser, url, rounds) {
       }
     }
     const metric = (id) => lhr.audits[id].displayValue;
+    if (lhr.audits['cumulative-layout-shift'].numericValue > MOST_SHIFT) {
+      const moved = lhr.audits['layout-shifts']?.details?.items ?? [];
+      for (const { score: by, node } of moved.slice(0, 3)) faults.add(`layout shift ${by.toFixed(3)}: ${node?.snippet ?? 'unknown'}`);
+    }
     lighter = {
       lcp: metric('largest-contentful-paint'),
       tbt: metric('total-blocking-time'),
