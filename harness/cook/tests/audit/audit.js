@@ -82,6 +82,8 @@ async function violations(browser, url) {
         { name: 'prefers-reduced-motion', value: 'reduce' },
       ]);
       await page.goto(url, { waitUntil: 'load' });
+      // Pages do some of their work when nothing else is waiting.
+      await page.evaluate(() => new Promise((done) => requestIdleCallback(() => setTimeout(done, 100))));
       await page.evaluate(axe.source);
       const { violations } = await page.evaluate(() => globalThis.axe.run(document));
       for (const { id, help, nodes } of violations) {
