@@ -2,7 +2,7 @@
 
 use super::{Failure, Outcome, output};
 use lapidary_assay::dispatch::{self, KernelModule};
-use lapidary_cook::cookbook::marks::{self, effect_of, effects, override_of};
+use lapidary_cook::cookbook::marks::{self, effects};
 use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
 use lapidary_scene::nearest;
@@ -317,13 +317,7 @@ fn with_effects(recipe: &Recipe, wanted: Option<&[String]>, functions: &[&str]) 
             nearest::suggest(unknown, &names)
         )));
     }
-    let off = known.iter().filter(|effect| wanted.as_ref().is_some_and(|wanted| !wanted.contains(effect)));
-    let off: Vec<&str> = off.map(String::as_str).collect();
-    let text = marks::without_but(recipe, &off, functions)
-        .map_err(|fault| Failure(format!("{}: {}", recipe.name, fault.message)))?;
-    let switched = text.lines().map(|line| match effect_of(line) {
-        Some(effect) if wanted.is_some() => format!("override {}: bool = true;", override_of(&effect)),
-        _ => line.to_owned(),
-    });
-    Ok(switched.collect::<Vec<_>>().join("\n") + "\n")
+    let wanted: Option<Vec<&str>> = wanted.map(|wanted| wanted.iter().map(|effect| effect.as_str()).collect());
+    marks::with_effects(recipe, wanted.as_deref(), functions)
+        .map_err(|fault| Failure(format!("{}: {}", recipe.name, fault.message)))
 }

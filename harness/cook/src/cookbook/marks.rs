@@ -183,6 +183,22 @@ pub fn without_but(recipe: &Recipe, off: &[&str], wanted: &[&str]) -> Result<Str
     Ok(indented(&kept.flat_map(|line| [line, "\n"]).collect::<String>()))
 }
 
+/// Returns a recipe to paste with these effects switched on and all others cut out, by [`without_but`]; without a list
+/// all effects are kept, with the recipe's own defaults.
+///
+/// # Errors
+/// Returns an error if the recipe's marks are not well formed.
+pub fn with_effects(recipe: &Recipe, wanted: Option<&[&str]>, functions: &[&str]) -> Result<String, Fault> {
+    let known = effects(&recipe.compose());
+    let off = known.iter().filter(|effect| wanted.is_some_and(|wanted| !wanted.contains(&effect.as_str())));
+    let text = without_but(recipe, &off.map(String::as_str).collect::<Vec<_>>(), functions)?;
+    let switched = text.lines().map(|line| match effect_of(line) {
+        Some(effect) if wanted.is_some() => format!("override {}: bool = true;", override_of(&effect)),
+        _ => line.to_owned(),
+    });
+    Ok(switched.collect::<Vec<_>>().join("\n") + "\n")
+}
+
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an
 /// effect, besides its declaration, are marked with that effect.
 pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {

@@ -183,8 +183,11 @@ impl<'a> Compare<'a> {
     fn of(kind: &'a Kind, steps: &[&Step], pictures: &'a [RungPicture], root: &str) -> Option<Self> {
         let has = |rung: &str| pictures.iter().any(|picture| picture.rung == rung);
         let fast = kind.technique.rung(Quality::Fast).to_string();
-        // The paper's rung, or else the cheapest, beside what is chosen if nothing is asked for.
-        let left = kind.paper.iter().map(|rung| (*rung).to_owned()).find(|rung| has(rung)).unwrap_or(fast);
+        // The paper's rung, if the ladder measured it, beside what is chosen if nothing is asked for.
+        let measured = |rung: &str| has(rung) && steps.iter().any(|step| step.rung == rung);
+        let paper = kind.paper.iter().map(|rung| (*rung).to_owned()).find(|rung| measured(rung));
+        let other = if has(REFERENCE) { REFERENCE.to_owned() } else { fast };
+        let left = paper.unwrap_or(other);
         let right = kind.technique.rung(Quality::Good).to_string();
         let pair = [left, right].map(|rung| {
             if has(&rung) { rung } else { pictures.first().map_or_else(String::new, |first| first.rung.clone()) }

@@ -22,7 +22,9 @@ pub struct Page {
     pub summary: String,
     /// The first display equation.
     pub equation: Markup,
-    /// Everything else, with headings as they are.
+    /// What follows before the first heading.
+    pub introduction: Markup,
+    /// Everything from the first heading on.
     pub rest: Markup,
     /// The headings of the rest.
     pub headings: Vec<Heading>,
@@ -37,6 +39,9 @@ pub struct Heading {
     pub id: String,
     /// Its text.
     pub text: String,
+    /// What stands below it, as plain text to search in.
+    #[serde(skip)]
+    pub words: String,
 }
 
 /// A picture in a text.
@@ -76,7 +81,7 @@ pub fn page(source: &str, links: &dyn Links) -> Page {
             Some(Event::Start(Tag::Heading { level, .. })) => {
                 under_heading = true;
                 let text = text_of(&block);
-                page.headings.push(Heading { level: *level as usize, id: slug(&text), text });
+                page.headings.push(Heading { level: *level as usize, id: slug(&text), text, words: String::new() });
             }
             Some(Event::Start(Tag::Paragraph)) if !under_heading => {
                 if is_equation(&block) && page.equation.0.is_empty() {
@@ -100,7 +105,12 @@ pub fn page(source: &str, links: &dyn Links) -> Page {
                 page.equation = part(Part { kind: "paragraph", markup: Some(markup), ..Part::default() });
             }
         }
-        page.rest.0.push_str(&render(block, links).0);
+        if let Some(heading) = page.headings.last_mut() {
+            heading.words.push_str(&text_of(&block));
+            heading.words.push(' ');
+        }
+        let place = if under_heading { &mut page.rest } else { &mut page.introduction };
+        place.0.push_str(&render(block, links).0);
     }
     page
 }
@@ -340,7 +350,7 @@ fn f() {}
     fn a_page_falls_into_lead_equation_and_rest() {
         let page = page(PAGE, &Few);
         assert_eq!((page.title.as_str(), page.headings.len()), ("fresnel", 1));
-        let (lead, equation, rest) = (page.lead.0, page.equation.0, page.rest.0);
+        let (lead, equation, rest) = (page.lead.0, page.equation.0, [page.introduction.0, page.rest.0].concat());
         assert!(lead.starts_with("<p>Lead with <code>&lt;f32&gt;</code>, <math"), "{lead}");
         assert!(equation.contains("<mfrac"), "{equation}");
         assert!(!rest.contains("<mfrac") && !rest.contains("<h1") && !rest.contains("generated"));

@@ -14,6 +14,7 @@ pub mod pictures;
 mod places;
 pub mod rows;
 mod search;
+mod take;
 mod techniques;
 pub mod templates;
 mod text;
@@ -21,7 +22,6 @@ mod text;
 use crate::cookbook::{self, marks};
 use crate::diagram;
 use crate::folder::{self, FolderError, Owner};
-use choices::Choice;
 use lapidary_gpu::Gpu;
 use lapidary_wgsl::Recipe;
 use pages::Page;
@@ -32,6 +32,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use take::Take;
 use templates::Markup;
 
 /// What the gallery is made of besides the cookbook itself.
@@ -75,6 +76,9 @@ pub enum GalleryError {
     /// The ladders were not drawn.
     #[error(transparent)]
     Ladder(#[from] ladder::LadderError),
+    /// A shader to take was not made.
+    #[error(transparent)]
+    Take(#[from] take::TakeError),
     /// The live scenes were not written.
     #[error(transparent)]
     Live(#[from] live::LiveError),
@@ -137,7 +141,7 @@ struct Parts<'a> {
     places: Places,
     docs: BTreeMap<String, String>,
     mirrors: BTreeMap<&'static str, Vec<String>>,
-    choices: Vec<Choice>,
+    takes: Vec<Take>,
     diagrams: Vec<DrawnDiagram>,
     ladders: BTreeMap<String, Markup>,
     editors: BTreeMap<&'static str, Markup>,
@@ -164,7 +168,8 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
 }
 
 fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
-    let shown = pictures::place(&site.pictures, &site.adapter, folder)?;
+    let adapter = short(&site.adapter);
+    let shown = pictures::place(&site.pictures, adapter, folder)?;
     let mut ladders = BTreeMap::new();
     if let Some(gpu) = site.device {
         for of in ladder::pictures(gpu, folder)? {
@@ -185,12 +190,12 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     }
     rows::write(folder)?;
     let parts = Parts {
-        adapter: &site.adapter,
+        adapter,
         places: Places::new(&shown),
         pictures: shown,
         docs: docs(site.root)?,
         mirrors: mirrors(site.root)?,
-        choices: choices::all(),
+        takes: choices::all().iter().map(take::take).collect::<Result<_, _>>()?,
         diagrams: diagrams(),
         ladders,
         editors: cookbook::modules().iter().filter_map(|module| Some((module.name, rows::editor(module)?))).collect(),
@@ -205,15 +210,25 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
         put(folder, &["assets/", name].concat(), bytes)?;
     }
     put(folder, "assets/mark.svg", templates::render("mark.svg", minijinja_mark()).0.as_bytes())?;
-    write_data(folder, &pages)?;
+    write_data(folder, &pages, &parts.takes)?;
     if let Some(rustdoc) = &site.rustdoc {
         copy_folder(rustdoc, &folder.join("rustdoc"))?;
     }
     Ok(())
 }
 
+/// Returns an adapter's description without the name that its driver repeats: `NAME (…) (NAME …)`.
+fn short(adapter: &str) -> &str {
+    let Some((name, _)) = adapter.split_once(" (") else { return adapter };
+    let repeated = adapter.rfind(&["(", name, " "].concat());
+    repeated.map_or(adapter, |at| adapter[at + 1..].strip_suffix(')').unwrap_or(adapter))
+}
+
 /// Writes what pages load on demand: the sources and the index of the search.
-fn write_data(folder: &Path, pages: &[Page]) -> Result<(), GalleryError> {
+fn write_data(folder: &Path, pages: &[Page], takes: &[Take]) -> Result<(), GalleryError> {
+    for take in takes {
+        put_data(folder, &take.source, &take.text)?;
+    }
     let entries: Vec<_> = pages.iter().flat_map(|page| &page.entries).collect();
     put_data(folder, "search", &entries)?;
     for module in cookbook::modules() {

@@ -23,19 +23,8 @@ pub struct Technique {
     pub modules: &'static [&'static str],
     /// Recipes that draw it, the one to take first.
     pub recipes: &'static [&'static str],
-    /// The recipe's effects to take in the command shown.
-    pub effects: &'static str,
     /// The scene of its live page.
     pub live: &'static str,
-}
-
-impl Technique {
-    /// Returns the command that copies its recipe.
-    pub fn command(&self) -> String {
-        let recipe = self.recipes[0];
-        let effects = if self.effects.is_empty() { String::new() } else { format!(" --effects {}", self.effects) };
-        format!("./cook copy {recipe}{effects} --out {recipe}.wgsl")
-    }
 }
 
 /// All techniques, in the order of the gallery.
@@ -66,7 +55,6 @@ pub const TECHNIQUES: [Technique; 4] = [
             "bounds_trace",
         ],
         recipes: &["gem_walk", "gem_convex", "gem_bvh", "gem", "gem_composite", "gem_resolve"],
-        effects: "convex_trace,absorption,dispersion",
         live: "brilliant",
     },
     Technique {
@@ -81,7 +69,6 @@ pub const TECHNIQUES: [Technique; 4] = [
         guides: &["cdrf_ladder"],
         modules: &["cdrf", "curvature", "half_space", "microfacet", "texture_diffusion", "random_walk"],
         recipes: &["cdrf_shading", "cdrf_table", "texture_irradiance", "blur_texture"],
-        effects: "",
         live: "skin_ring",
     },
     Technique {
@@ -104,7 +91,6 @@ pub const TECHNIQUES: [Technique; 4] = [
             "optical_path_sweep",
             "optical_path_tiles",
         ],
-        effects: "",
         live: "bunny",
     },
     Technique {
@@ -126,7 +112,6 @@ pub const TECHNIQUES: [Technique; 4] = [
             "voxelize",
             "draw_light_map",
         ],
-        effects: "",
         live: "dragon",
     },
 ];

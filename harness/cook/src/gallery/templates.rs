@@ -24,6 +24,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("pictures.html", include_str!("templates/pictures.html")),
     ("recipe.html", include_str!("templates/recipe.html")),
     ("start.html", include_str!("templates/start.html")),
+    ("takes.html", include_str!("templates/takes.html")),
     ("technique.html", include_str!("templates/technique.html")),
 ];
 

@@ -31,7 +31,7 @@ fn pages_of(pictures: &[Source], folder: &Path) -> Result<Vec<(Page, String)>, G
         pictures: shown,
         docs: docs(&root)?,
         mirrors: mirrors(&root)?,
-        choices: choices::all(),
+        takes: choices::all().iter().map(take::take).collect::<Result<_, _>>()?,
         diagrams: diagrams(),
         ladders: BTreeMap::new(),
         editors: BTreeMap::new(),
@@ -149,4 +149,13 @@ fn a_folder_of_something_else_is_refused() {
     let error = write(around.path(), &site).expect_err("foreign").to_string();
     assert!(error.contains("thesis.tex") && error.contains("--out"), "{error}");
     assert_eq!(fs::read_to_string(around.path().join("thesis.tex")).expect("kept"), "years");
+}
+
+#[test]
+fn an_adapter_is_named_once() {
+    let long = "llvmpipe (LLVM 15.0.6, 256 bits) (llvmpipe Mesa 22.3.6 (LLVM 15.0.6), Vulkan)";
+    assert_eq!(short(long), "llvmpipe Mesa 22.3.6 (LLVM 15.0.6), Vulkan");
+    for whole in ["NVIDIA H200 (NVIDIA 580.159.04, Vulkan)", "Apple M1", "Apple M1 (Metal)"] {
+        assert_eq!(short(whole), whole);
+    }
 }

@@ -44,6 +44,14 @@ pub fn slug(text: &str) -> String {
     words.join("-")
 }
 
+/// Returns whom a header's source credits, as a sentence: `own` is what is new here.
+pub fn credit(source: &str) -> String {
+    match source.strip_prefix("own") {
+        Some(rest) => ["New here", rest].concat(),
+        None => ["After ", source].concat(),
+    }
+}
+
 /// Returns the first sentence of a text.
 pub fn first_sentence(text: &str) -> &str {
     text.find(". ").map_or(text, |end| &text[..=end])

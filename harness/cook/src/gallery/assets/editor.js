@@ -34,7 +34,11 @@
       this.run.addEventListener('click', () => this.check());
       this.restore.addEventListener('click', () => this.reset());
       this.copy.addEventListener('click', () => this.hand());
-      this.text.addEventListener('input', () => this.number([]));
+      this.text.addEventListener('input', () => {
+        // What was found is of another text now.
+        this.number([]);
+        this.result.replaceChildren();
+      });
       this.text.addEventListener('scroll', () => (this.lines.scrollTop = this.text.scrollTop));
       this.text.addEventListener('keydown', (event) => {
         if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey)) return;

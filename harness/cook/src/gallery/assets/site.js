@@ -145,6 +145,7 @@ const menu = document.querySelector('.menu');
 menu.addEventListener('click', () => {
   const open = document.body.classList.toggle('menu-open');
   menu.setAttribute('aria-expanded', String(open));
+  if (open) document.querySelector('#contents a').focus();
 });
 addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && document.body.classList.contains('menu-open')) {
@@ -207,8 +208,8 @@ const search = (() => {
   /** How well an entry answers the words; 0 if one of them is not there. */
   function score(entry, words) {
     const name = entry.name.toLowerCase();
-    const all = `${name} ${entry.on} ${entry.text}`.toLowerCase();
-    const weight = { page: 3, function: 2, picture: 0.5, heading: 1 }[entry.kind];
+    const all = `${name} ${entry.on} ${entry.text} ${entry.words ?? ''}`.toLowerCase();
+    const weight = { page: 3, function: 2, rung: 2, picture: 0.5, heading: 1 }[entry.kind];
     let sum = 0;
     for (const word of words) {
       if (!all.includes(word)) return 0;
@@ -238,7 +239,7 @@ const search = (() => {
     const link = document.createElement('a');
     link.href = gallery.root + entry.path;
     link.tabIndex = -1;
-    const name = document.createElement(entry.kind === 'function' ? 'code' : 'b');
+    const name = document.createElement(['function', 'rung'].includes(entry.kind) ? 'code' : 'b');
     name.textContent = entry.name;
     const on = document.createElement('span');
     on.textContent = entry.on || entry.kind;
@@ -263,6 +264,7 @@ const search = (() => {
   function onKey(event) {
     if (event.key === 'ArrowDown') choose(chosen + 1);
     else if (event.key === 'ArrowUp') choose(chosen - 1);
+    else if (event.key === 'Escape') dialog.close();
     else if (event.key === 'Enter') dialog.querySelector(`#found-${chosen} a`)?.click();
     else return;
     event.preventDefault();
@@ -283,7 +285,7 @@ const search = (() => {
 
   document.querySelector('.search-open').addEventListener('click', open);
   addEventListener('keydown', (event) => {
-    const typing = event.target.closest?.('input, textarea, select, [contenteditable]');
+    const typing = event.target.closest?.('input:not([type="checkbox"], [type="range"], [type="file"]), textarea, select');
     const asked = (event.key === '/' && !typing) || (event.key === 'k' && (event.ctrlKey || event.metaKey));
     if (!asked || document.querySelector('dialog[open]')) return;
     event.preventDefault();

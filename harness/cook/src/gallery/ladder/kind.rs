@@ -169,7 +169,7 @@ impl Kind {
     }
 
     /// Returns the rungs by increasing time. A record also holds forms that are no rungs, for comparison.
-    pub(super) fn steps(&self) -> Vec<&'static Step> {
+    pub fn steps(&self) -> Vec<&'static Step> {
         let is_rung = |step: &&Step| step.rung.parse::<lapidary_plan::Rung>().is_ok();
         let mut steps: Vec<&Step> =
             self.ladder().into_iter().flat_map(|ladder| &ladder.steps).filter(is_rung).collect();
@@ -199,7 +199,7 @@ impl Kind {
     }
 
     /// Returns the name of the scene of its pictures.
-    pub(super) fn scene(&self) -> &'static str {
+    pub fn scene(&self) -> &'static str {
         SHOTS.iter().find(|shot| shot.name == self.like).map_or("", |shot| shot.scene)
     }
 

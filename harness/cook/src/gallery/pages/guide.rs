@@ -10,14 +10,21 @@ use super::super::{
 use super::{Entry, Page};
 use serde::Serialize;
 
+/// The guide to the rungs.
+const CHOOSING: &str = "choosing";
+
 #[derive(Serialize)]
 struct Values<'a> {
     title: &'a str,
     lead: Markup,
     equation: Markup,
+    introduction: Markup,
     rest: Markup,
     headings: Vec<&'a Heading>,
     ladders: Vec<&'a Markup>,
+    /// Shaders of the rungs, on the page that says which to choose.
+    takes: &'a [super::super::take::Take],
+    live: Vec<&'a super::super::LivePage>,
 }
 
 /// Returns the page of a guide.
@@ -27,9 +34,12 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
         title: &doc.title,
         lead: doc.lead,
         equation: doc.equation,
+        introduction: doc.introduction,
         rest: doc.rest,
         headings: doc.headings.iter().filter(|heading| heading.level == 2).collect(),
         ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
+        takes: if of.name == CHOOSING { &parts.takes } else { &[] },
+        live: parts.live.iter().collect(),
     };
     let body = templates::render("guide.html", values);
     let path = ["guides/", of.name, ".html"].concat();

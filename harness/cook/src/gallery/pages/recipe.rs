@@ -5,7 +5,7 @@ use super::super::{
     highlight::{self, Language, Piece},
     markdown,
     templates::{self, Markup},
-    text::{Span, prose},
+    text::{Span, credit, prose},
 };
 use super::{Entry, Page};
 use crate::cookbook::header::parse_header;
@@ -42,12 +42,12 @@ pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
     let values = Values {
         name: recipe.name,
         purpose: prose(purpose),
-        citation: prose(header.as_ref().map_or("", |header| header.source.as_str())),
+        citation: header.as_ref().map_or_else(Vec::new, |header| prose(&credit(&header.source))),
         requires: recipe.requires(),
         lines: whole.lines().count(),
         wgsl: highlight::pieces(recipe.source, Language::Wgsl),
         overrides: overrides.collect(),
-        host: Markup([host.lead.0, host.rest.0].concat()),
+        host: Markup([host.lead.0, host.introduction.0, host.rest.0].concat()),
         techniques: techniques.map(|of| (["../techniques/", of.name, ".html"].concat(), of.title)).collect(),
     };
     let mut page = Page::new("recipe", path, recipe.name, purpose, templates::render("recipe.html", values));

@@ -11,7 +11,6 @@ struct Card<'a> {
     name: &'a str,
     title: &'a str,
     summary: &'a str,
-    command: String,
     live: Option<&'a str>,
     picture: Option<&'a Shown>,
 }
@@ -23,7 +22,6 @@ pub fn page(parts: &Parts<'_>) -> Page {
         name: of.name,
         title: of.title,
         summary: of.summary,
-        command: of.command(),
         live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
         picture: picture(of.hero),
     };
@@ -34,7 +32,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
         modules: usize,
         functions: usize,
         recipes: usize,
-        choices: &'a [super::super::choices::Choice],
+        takes: &'a [super::super::take::Take],
     }
     let values = Values {
         hero: picture("vitrine"),
@@ -42,7 +40,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
         modules: cookbook::modules().len(),
         functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),
         recipes: lapidary_wgsl::RECIPES.len(),
-        choices: &parts.choices,
+        takes: &parts.takes,
     };
     let body = templates::render("start.html", values);
     let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";

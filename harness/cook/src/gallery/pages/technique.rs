@@ -1,7 +1,9 @@
 //! A technique's page.
 
 use super::super::{
-    Parts, markdown,
+    Parts,
+    ladder::Kind,
+    markdown,
     pictures::Shown,
     techniques::Technique,
     templates::{self, Markup},
@@ -22,15 +24,17 @@ struct Values<'a> {
     technique: &'a str,
     title: &'a str,
     summary: &'a str,
-    copying: String,
     hero: Option<&'a Shown>,
     live: Option<&'a str>,
     lead: Markup,
     equation: Markup,
+    introduction: Markup,
     rest: Markup,
+    /// The rest's headings.
+    headings: Vec<&'a super::super::markdown::Heading>,
     /// The doc page that holds the rest, if it is a module's own.
     module: Option<&'a str>,
-    choices: Vec<&'a super::super::choices::Choice>,
+    takes: Vec<&'a super::super::take::Take>,
     diagrams: Vec<&'a super::super::DrawnDiagram>,
     ladders: Vec<&'a Markup>,
     pictures: Vec<&'a Shown>,
@@ -50,6 +54,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     let path = ["techniques/", of.name, ".html"].concat();
     let file = ["docs/", of.doc, ".md"].concat();
     let doc = markdown::page(&parts.doc(&file), &parts.places.of(&file));
+    let headings = doc.headings.clone();
     let module = cookbook::module(of.doc).map(|module| module.name);
     let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
     let hero = parts.pictures.iter().find(|picture| picture.name == of.hero);
@@ -62,14 +67,15 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         technique: of.name,
         title: of.title,
         summary: of.summary,
-        copying: of.command(),
         hero,
         live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
         lead: doc.lead,
         equation: doc.equation,
+        introduction: doc.introduction,
         rest: if module.is_some() { Markup::default() } else { doc.rest },
+        headings: headings.iter().filter(|heading| heading.level == 2 && module.is_none()).collect(),
         module,
-        choices: parts.choices.iter().filter(|choice| of.ladders.contains(&choice.ladder)).collect(),
+        takes: parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder)).collect(),
         diagrams: parts.diagrams.iter().filter(|diagram| of.modules.contains(&diagram.module)).collect(),
         ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
         pictures: parts.pictures.iter().filter(shown).collect(),
@@ -80,6 +86,13 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
         .with(&["diagram.css", "ladder.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
+    for kind in of.ladders.iter().filter_map(|name| Kind::named(name)) {
+        let path = [&page.path, "#ladder-", kind.name].concat();
+        page.entries.extend(kind.steps().iter().map(|step| {
+            let figures = format!("{} {:.2}, {:.1} ms on two CPU cores", kind.error, step.error, step.ms);
+            Entry::rung(&step.rung, kind.title, &path, figures)
+        }));
+    }
     if module.is_none() {
         page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
     }
