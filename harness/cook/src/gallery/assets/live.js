@@ -30,7 +30,7 @@ class Live {
     if (!adapter) throw new Error('This browser has WebGPU, but gives no graphics device to it');
     const requiredFeatures = ['timestamp-query'].filter((name) => adapter.features.has(name));
     this.device = await adapter.requestDevice({ requiredFeatures });
-    this.limits = adapter.limits;
+    [this.limits, this.adapter] = [adapter.limits, adapter.info];
     this.device.addEventListener('uncapturederror', ({ error }) => (this.error ??= error));
     this.device.lost.then(({ message }) => lost(message));
     this.sides = [];
@@ -83,17 +83,22 @@ class Live {
     return as === 'json' ? JSON.parse(text) : text;
   }
 
+  /** A frame of the frames' data. */
+  load(file) {
+    const read = (asked, as) => this.#read(asked === 'frame.json' ? file : asked, as);
+    return Frame.load(this.device, read, this.limits);
+  }
+
   /** The frame of a rung with the effects that are on, loaded unless it is there already. */
   async #side(name) {
-    const { device, environment, limits, manifest, state } = this;
+    const { environment, manifest, state } = this;
     const rung = manifest.rungs[name];
     const effects = rung.toggles.filter((effect) => state.on[effect]);
     if (environment) effects.push(manifest.environment.effect);
     const file = rung.frames[effects.join('+')];
     const there = this.sides.find((side) => side.file === file && side.environment === environment);
     if (there) return there;
-    const read = (asked, as) => this.#read(asked === 'frame.json' ? file : asked, as);
-    const frame = await Frame.load(device, read, limits);
+    const frame = await this.load(file);
     const named = (of) => frame.rows.resources.findIndex((row) => row.name === of);
     const texture = environment ? named(manifest.environment.texture) : -1;
     if (texture >= 0) frame.replace(texture, [environment.width, environment.height], environment.texels.buffer);

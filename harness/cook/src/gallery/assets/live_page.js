@@ -4,7 +4,7 @@ const section = document.querySelector('section.live');
 const all = (selector) => [...section.querySelectorAll(selector)];
 const one = (selector) => section.querySelector(selector);
 const input = (name) => one(`[name="${name}"]`);
-const [canvas, image, run, note] = ['canvas', 'img', '.live-run', '.live-note'].map(one);
+const [canvas, image, run, note, seam] = ['canvas', 'img', '.live-run', '.live-note', '.live-seam'].map(one);
 const { scene } = section.dataset;
 
 /** How often in a row a lost device is replaced. */
@@ -70,18 +70,61 @@ function fragment() {
   return new URLSearchParams(found).toString();
 }
 
+/** What is moved, and whether `./cook render` has an option for it. */
+function moved() {
+  const { manifest, start, state } = live;
+  const sliders = Object.entries(manifest.sliders).filter(([name]) => state.steps[name] !== start.steps[name]);
+  const label = (name) => one(`[data-slider="${name}"] label`).textContent.trim();
+  const without = sliders.filter(([, { option }]) => !option).map(([name]) => label(name));
+  const isNear = Math.abs(state.distance - start.distance) < 0.005 * start.distance;
+  return { sliders, without: [...without, ...(isNear ? [] : ['the distance of the eye'])] };
+}
+
 /** The command that draws it, as far as there are options for it. */
 function command() {
-  const { manifest, start, state } = live;
+  const { manifest, state } = live;
   const words = ['./cook render', scene, '--rung', state.rung, '--samples', manifest.samples];
   for (const name of manifest.rungs[state.rung].toggles) {
     words.push(manifest.toggles[name].options[state.on[name] ? 'on' : 'off']);
   }
-  for (const [name, { option, values }] of Object.entries(manifest.sliders)) {
-    if (option && state.steps[name] !== start.steps[name]) words.push(option, values[state.steps[name]]);
-  }
+  for (const [name, { option, values }] of moved().sliders) if (option) words.push(option, values[state.steps[name]]);
   if (live.isTurned) words.push('--from', `${round(state.polar)},${round(state.azimuth)}`);
+  if (live.environment) words.push('--environment', live.environment.name ?? 'FILE');
   return words.filter((word) => word !== '').join(' ');
+}
+
+/** The pipelines that draw the scene by the first rung, with their texts. */
+function pipelines() {
+  const [{ frame }] = live.sides;
+  const { draws } = frame.rows.passes.find(({ name }) => name === 'scene');
+  const seen = new Map(draws.map(({ pipeline }) => [frame.texts[pipeline], pipeline]));
+  return [...seen.values()].map((place) => ({ place, text: frame.texts[place], ...frame.rows.pipelines[place] }));
+}
+
+/** A pipeline's effects that are on and off, and its other constants. */
+function chosen({ overrides }) {
+  const all = Object.entries(overrides);
+  const effects = (on) => all.filter(([name, value]) => name.startsWith('EFFECT_') && (value !== 0) === on);
+  const name = ([of]) => of.slice('EFFECT_'.length).toLowerCase();
+  const others = all.filter(([of]) => !of.startsWith('EFFECT_'));
+  return { on: effects(true).map(name), off: effects(false).map(name), set: others.map((pair) => pair.join('=')) };
+}
+
+/** The command that writes a pipeline's recipe as it is drawn with. */
+function copying(pipeline) {
+  const { on, set } = chosen(pipeline);
+  const effects = ['--effects', on.length > 0 ? on.join() : '""'];
+  return ['./cook copy', pipeline.recipe, ...effects, ...set.flatMap((pair) => ['--set', pair])].join(' ');
+}
+
+/** Shows the commands, and what the first one leaves out. */
+function reflectCommands() {
+  const { without } = moved();
+  one('.live-command code').textContent = command();
+  one('.live-left').textContent = without.length > 0 ? `The command has no option for the moved sliders, so it draws without: ${without.join(', ')}.` : '';
+  one('.live-left').hidden = without.length === 0;
+  one('.live-copying').hidden = live.sides.length === 0;
+  if (live.sides.length > 0) one('.live-copying code').textContent = pipelines().map(copying).join('\n');
 }
 
 /** Shows the state in the controls, the command and the address. */
@@ -90,6 +133,8 @@ function reflect() {
   const rungs = [state.rung, state.other].map((name) => manifest.rungs[name]);
   for (const name of ['rung', 'other', 'wipe']) input(name).value = state[name];
   one('[data-wipe]').hidden = !state.other;
+  seam.hidden = canvas.hidden || !state.other || state.other === state.rung;
+  seam.style.left = `${state.wipe}%`;
   one('[data-wipe] output').textContent = `${state.wipe} %`;
   for (const box of all('[data-toggle]')) {
     box.checked = state.on[box.name];
@@ -103,7 +148,7 @@ function reflect() {
     one(`[data-slider="${name}"] output`).textContent = text;
     one(`[data-slider="${name}"] [data-reset]`).disabled = state.steps[name] === start;
   }
-  one('.live-command code').textContent = command();
+  reflectCommands();
   if (fragment() !== location.hash.slice(1)) history.replaceState(null, '', `#${fragment()}`);
 }
 
@@ -125,9 +170,12 @@ function set(changes = {}) {
   Object.assign(live.state, changes);
   reflect();
   one('.live-time').textContent = '';
+  // What was said is of what was shown.
+  if (!note.classList.contains('failed')) tell('');
   wanted = true;
   drawing ??= drawn()
     .then(() => note.classList.contains('failed') && tell(''))
+    .then(reflectCommands)
     .finally(() => (drawing = null));
   return drawing.catch(failed);
 }
@@ -136,7 +184,7 @@ function set(changes = {}) {
 function failed(error) {
   const reason = error.message.split('\n')[0].replace(/[.\s]+$/, '');
   tell(`${reason[0]?.toUpperCase()}${reason.slice(1)}. The picture above is the one that the renderer draws.`, true);
-  [canvas.hidden, image.hidden, run.hidden] = [true, false, false];
+  [canvas.hidden, image.hidden, run.hidden, seam.hidden, one('.live-device').hidden] = [true, false, false, true, true];
   one('.live-controls').disabled = true;
   settle.reject(error);
 }
@@ -152,6 +200,12 @@ async function lost(message) {
   return begin();
 }
 
+/** What the browser tells of the graphics device. */
+function adapterName() {
+  const { description, vendor, architecture } = live.adapter ?? {};
+  return description || [vendor, architecture].filter(Boolean).join(' ') || 'your graphics device';
+}
+
 /** Draws on a new device. */
 async function begin() {
   try {
@@ -160,6 +214,8 @@ async function begin() {
     await live.draw();
     [canvas.hidden, image.hidden, run.hidden] = [false, true, true];
     one('.live-controls').disabled = false;
+    one('.live-device').hidden = false;
+    one('.live-device').textContent = `Running on ${adapterName()}.`;
     reflect();
     tell('');
     settle.resolve();
@@ -172,6 +228,7 @@ async function begin() {
 async function start() {
   tell('Loading the scene and compiling its shaders …');
   run.disabled = true;
+  run.textContent = 'Starting …';
   try {
     if (!navigator.gpu) throw new Error('This browser has no WebGPU');
     live ??= new Live(await gallery.load(`live/${scene}`), canvas);
@@ -183,22 +240,77 @@ async function start() {
     failed(error);
   }
   run.disabled = false;
+  run.textContent = 'Run it on your GPU';
 }
 
 // What one does.
 
-/** Milliseconds that each rung that is shown takes for a frame with all its passes. */
+/** Runs of a frame whose median is its time, and runs before them, in which the device speeds up. */
+const [RUNS, WARM_UP] = [11, 5];
+/** Browsers round a device's clock to tenths of milliseconds; shorter frames are timed by many, this long together. */
+const [SHORT, LONG_ENOUGH] = [2, 20];
+
+/** Milliseconds that a frame takes with all its passes. */
+async function timeOf(frame) {
+  const done = () => live.device.queue.onSubmittedWorkDone();
+  for (let run = 0; run < WARM_UP; run++) frame.draw();
+  await done();
+  const one = await frame.time(RUNS);
+  if (one >= SHORT) return one;
+  const times = [];
+  for (const count = Math.ceil(LONG_ENOUGH / Math.max(one, 0.05)); times.length < RUNS; ) {
+    const begin = performance.now();
+    for (let run = 0; run < count; run++) frame.draw();
+    await done();
+    times.push((performance.now() - begin) / count);
+  }
+  return times.sort((a, b) => a - b)[RUNS >> 1];
+}
+
+/** Times the frames of the rungs that are shown, of the ladder's size and samples and as at the start. */
 async function times() {
   const found = [];
-  for (const { name, frame } of live.sides) found.push({ rung: name, ms: await frame.time() });
+  for (const { name, rung } of live.sides.slice()) {
+    const frame = await live.load(rung.timed);
+    try {
+      found.push({ rung: name, ms: await timeOf(frame) });
+    } finally {
+      frame.destroy();
+    }
+  }
   return found;
 }
 
-/** The shaders that draw the scene by the first rung, as they are compiled. */
+/** What a text to paste must say of itself, as comments. */
+function header(pipeline) {
+  const [{ frame, name }] = live.sides;
+  const { on, off, set } = chosen(pipeline);
+  const groups = frame.rows.bind_groups.filter((group) => group.pipeline === pipeline.place);
+  const bindings = new Map();
+  for (const { group, entries } of groups) {
+    for (const { binding, resource } of entries) bindings.set(`@group(${group}) @binding(${binding})`, frame.rows.resources[resource]);
+  }
+  const field = ({ name: of, type, offset }) => `${of}: ${type} at ${offset}`;
+  const told = [...bindings].sort().map(([at, { name: of, layout }]) => {
+    const held = layout ? `, ${layout.name} of ${layout.bytes} bytes: ${layout.fields.map(field).join(', ')}` : '';
+    return `  ${at} is ${of}${held}`;
+  });
+  return [
+    `${pipeline.recipe}, a recipe of Lapidary ${live.manifest.version}, as rung ${name} draws ${scene}`,
+    'SPDX-License-Identifier: MIT-0 OR Apache-2.0',
+    `Effects on: ${on.join(', ') || 'none'}; off, and cut out: ${off.join(', ') || 'none'}`,
+    `Constants: ${set.join(', ') || 'none'}`,
+    'Sliders and camera are no part of this text: their values are in buffers, here with the bytes where fields start:',
+    ...told,
+    `Every binding is explained on recipes/${pipeline.recipe}.html of this gallery; their contents for this scene are written by`,
+    `  ./cook frame ${scene} --rung ${name} --out FOLDER`,
+    `The cookbook's own text of it: ${copying(pipeline)}`,
+  ].map((line) => `// ${line}\n`).join('');
+}
+
+/** The shaders that draw the scene by the first rung, as they are compiled, each under its header. */
 function shader() {
-  const [{ frame }] = live.sides;
-  const { draws } = frame.rows.passes.find(({ name }) => name === 'scene');
-  return [...new Set(draws.map(({ pipeline }) => frame.texts[pipeline]))].join('\n');
+  return pipelines().map((pipeline) => `${header(pipeline)}\n${pipeline.text}`).join('\n');
 }
 
 /** Reads back the texture that the canvas shows. */
@@ -222,11 +334,18 @@ async function measure() {
   await drawing;
   tell('Measuring …');
   const measured = await times();
-  one('.live-time').textContent = measured.map(({ rung, ms }) => `${rung}: ${ms.toFixed(2)} ms on your GPU`).join(', ');
+  const { side, samples } = manifest.timed;
+  const each = measured.map(({ rung, ms }) => `${rung}: ${Number(ms.toPrecision(2))} ms on your GPU`).join(', ');
+  const drawn = `${side} × ${side} pixels, ${samples === 1 ? 'one sample' : `${samples * samples} samples`}`;
+  // Where controls were moved, the picture is another one than what was timed.
+  const { on, steps } = live.start;
+  const isStart = ['on', 'steps'].every((of) => JSON.stringify(live.state[of]) === JSON.stringify({ on, steps }[of]));
+  const usual = isStart && !live.isTurned && !live.environment ? '' : ' It is the ladder’s frame, with all controls as at the start.';
+  one('.live-time').textContent = `${each}, for ${drawn}, on ${adapterName()}.${usual}`;
   tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {
     for (const plot of document.querySelectorAll(`svg.plot[data-ladder="${manifest.ladder}"]`)) {
-      gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU: ${ms.toFixed(2)} ms`);
+      gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
     }
   }
 }
@@ -246,24 +365,31 @@ function light(environment) {
 async function lightBy(file) {
   try {
     tell(`Reading ${file.name} …`);
-    await light(await gallery.decodeEnvironment(await file.arrayBuffer(), file.name));
+    const picture = await gallery.decodeEnvironment(await file.arrayBuffer(), file.name);
+    await light(Object.assign(picture, { name: file.name }));
     tell(`Lit by ${file.name}.`);
   } catch (error) {
     tell(error.message, true);
   }
 }
 
-async function copied(text, what) {
-  tell((await gallery.copy(text)) ? `${what} is in the clipboard.` : `${what} could not be copied.`);
+/** Copies a text, and says so on the button that was pressed. */
+async function copied(text, what, button) {
+  const label = (button.dataset.label ??= button.textContent);
+  const done = await gallery.copy(text);
+  tell(done ? `${what} is in the clipboard.` : `${what} could not be copied: this browser gives no way to it here.`);
+  button.textContent = done ? 'Copied' : 'Not copied';
+  setTimeout(() => (button.textContent = label), 2000);
 }
 
 const actions = {
   time: measure,
-  shader: () => copied(shader(), 'The shader'),
-  command: () => copied(one('.live-command code').textContent, 'The command'),
+  shader: (button) => copied(shader(), 'The shader', button),
+  command: (button) => copied(one('.live-command code').textContent, 'The command', button),
+  recipe: (button) => copied(one('.live-copying code').textContent, 'The command', button),
   start: () => set(structuredClone(live.start)),
 };
-for (const button of all('[data-do]')) button.addEventListener('click', () => actions[button.dataset.do]());
+for (const button of all('[data-do]')) button.addEventListener('click', () => actions[button.dataset.do](button));
 
 section.addEventListener('input', ({ target }) => {
   const { name, value, type, checked } = target;
@@ -284,9 +410,26 @@ const move = (polar, azimuth, share = 1) => {
   set(placed(state.polar + polar, state.azimuth + azimuth, state.distance * share));
 };
 
+/** How near the seam in pixels a drag moves it instead of the eye. */
+const SEAM = 14;
+
+/** The wipe under a pointer, in percent. */
+function wipeAt({ clientX }) {
+  const { left, width } = canvas.getBoundingClientRect();
+  return clamped(Math.round((100 * (clientX - left)) / width), 0, 100);
+}
+
+/** Whether a pointer is on the seam of two rungs. */
+function isOnSeam({ clientX }) {
+  const { left, width } = canvas.getBoundingClientRect();
+  return !seam.hidden && Math.abs(clientX - left - (live.state.wipe / 100) * width) < SEAM;
+}
+
 const fingers = new Map();
+let wiping = false;
 canvas.addEventListener('pointerdown', (event) => {
   canvas.setPointerCapture(event.pointerId);
+  wiping = fingers.size === 0 && isOnSeam(event);
   fingers.set(event.pointerId, event);
 });
 for (const end of ['pointerup', 'pointercancel']) {
@@ -294,6 +437,7 @@ for (const end of ['pointerup', 'pointercancel']) {
 }
 canvas.addEventListener('pointermove', (event) => {
   const before = fingers.get(event.pointerId);
+  canvas.classList.toggle('on-seam', before ? wiping : isOnSeam(event));
   if (!before) return;
   const apart = () => {
     const [one, other] = fingers.values();
@@ -301,6 +445,7 @@ canvas.addEventListener('pointermove', (event) => {
   };
   const distance = fingers.size === 2 && apart();
   fingers.set(event.pointerId, event);
+  if (wiping) return void set({ wipe: wipeAt(event) });
   if (distance) move(0, 0, distance / apart());
   else move(0.4 * (before.clientY - event.clientY), 0.4 * (before.clientX - event.clientX));
 });

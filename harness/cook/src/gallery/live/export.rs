@@ -25,6 +25,10 @@ pub struct Manifest {
     scene: &'static str,
     side: u32,
     samples: u32,
+    /// The frames to time: their width and height, and samples along each side of a pixel, as in the ladder.
+    timed: Value,
+    /// The version that exported it.
+    version: &'static str,
     /// The rung to begin with.
     rung: &'static str,
     /// Name of the plot.
@@ -51,6 +55,8 @@ pub struct Rung {
     toggles: Vec<&'static str>,
     /// The frame of each choice of effects: those that are on, joined by `+`.
     pub frames: BTreeMap<String, String>,
+    /// The frame to time, with the effects that are on at first.
+    pub timed: String,
     /// What the sliders move.
     pub moves: Vec<Move>,
 }
@@ -98,6 +104,8 @@ pub fn manifest(live: &LiveScene, store: &mut Store) -> Result<Manifest, LiveErr
         scene: live.scene,
         side: SIDE,
         samples: SAMPLES,
+        timed: json!({"side": live.timed_side, "samples": 1}),
+        version: env!("CARGO_PKG_VERSION"),
         rung: live.rungs[0],
         ladder: live.ladder,
         environment: live.environment.then(|| json!({"effect": MAP, "texture": "environment map"})),
@@ -190,6 +198,8 @@ fn rung(
     for (key, made) in made {
         frames.insert(key, store_frame(store, made, &moved)?);
     }
+    let timed = Settings { width: live.timed_side, height: live.timed_side, samples: 1, ..base_settings };
+    let timed = store_frame(store, make(scene, &timed)?, &BTreeSet::new())?;
     let step = Ladder::committed(live.technique).and_then(|ladder| ladder.step(name));
     Ok(Rung {
         error: step.map(|step| step.error),
@@ -197,6 +207,7 @@ fn rung(
         recipe: recipe(&base.document),
         toggles: toggles.iter().map(|toggle| toggle.effect.name()).collect(),
         frames,
+        timed,
         moves,
     })
 }

@@ -21,14 +21,20 @@ struct Shown<'a> {
     samples: u32,
     poster: String,
     command: String,
-    rungs: &'a [&'a str],
-    other: &'a str,
+    rungs: Vec<Choice>,
     toggles: Vec<ToggleRow>,
     sliders: Vec<SliderRow>,
     environment: bool,
     executor: Markup,
     drawing: Markup,
     controls: Markup,
+}
+
+/// A rung in a menu, and the qualities that choose it.
+#[derive(Serialize)]
+struct Choice {
+    name: &'static str,
+    qualities: String,
 }
 
 #[derive(Serialize)]
@@ -68,8 +74,7 @@ pub fn section(live: &LiveScene) -> Result<Markup, LiveError> {
         samples: SAMPLES,
         poster: format!("../{}", poster(live)),
         command: format!("./cook render {} --rung {} --samples {SAMPLES}", live.scene, live.rungs[0]),
-        rungs: live.rungs,
-        other: live.other,
+        rungs: live.menu().into_iter().map(|(name, qualities)| Choice { name, qualities }).collect(),
         toggles: live.toggles.iter().map(toggle).collect(),
         sliders: sliders.collect(),
         environment: live.environment,

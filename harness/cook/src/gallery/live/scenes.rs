@@ -3,9 +3,10 @@
 use super::slider::{
     ABSORPTION, DISPERSION_STRENGTH, EXPOSURE, FREE_PATH, INDEX, LIGHT_POWER, LIGHT_TURN, ROUGHNESS, Slider,
 };
-use lapidary_plan::quality::Technique;
+use lapidary_plan::quality::{Quality, Technique};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render::Settings;
+use std::cmp::Ordering;
 
 /// Width and height of a live picture in pixels: the largest that is drawn without tiles.
 pub const SIDE: u32 = 512;
@@ -29,12 +30,33 @@ pub struct LiveScene {
     pub ladder: &'static str,
     /// The ladder that holds the rungs' errors and times.
     pub technique: Technique,
+    /// Width and height in pixels of the frames that the ladder timed, of one sample each.
+    pub timed_side: u32,
     /// Effects to switch.
     pub toggles: &'static [Toggle],
     /// What can be moved.
     pub sliders: &'static [&'static Slider],
     /// Whether a picture can be given as the environment.
     pub environment: bool,
+}
+
+impl LiveScene {
+    /// Returns the rungs as a menu lists them, each with the qualities that choose it: the one that is drawn at first,
+    /// the other defaults, and the rest by their times.
+    #[must_use]
+    pub fn menu(&self) -> Vec<(&'static str, String)> {
+        let qualities = |rung: &str| {
+            let chosen = Quality::ALL.into_iter().filter(|quality| self.technique.rung(*quality).to_string() == rung);
+            chosen.map(|quality| quality.to_string()).collect::<Vec<_>>().join(", ")
+        };
+        let ladder = self.technique.ladder();
+        let time = |rung: &str| ladder.and_then(|ladder| ladder.step(rung)).map_or(f64::INFINITY, |step| step.ms);
+        let mut menu: Vec<_> = self.rungs.iter().map(|rung| (*rung, qualities(rung))).collect();
+        menu[1..].sort_by(|(a, a_chosen), (b, b_chosen)| {
+            (a_chosen.is_empty(), time(a)).partial_cmp(&(b_chosen.is_empty(), time(b))).unwrap_or(Ordering::Equal)
+        });
+        menu
+    }
 }
 
 /// An effect that can be switched.
@@ -77,6 +99,7 @@ const fn toggle(effect: Effect, label: &'static str, on: bool) -> Toggle {
 
 const STONE_RUNGS: &[&str] = &[
     "walk-8+tracker",
+    "walk-4",
     "walk-16+tracker",
     "walk-4+tracker",
     "walk-2+tracker",
@@ -98,10 +121,11 @@ pub const SCENES: [LiveScene; 5] = [
         scene: "brilliant",
         title: "A diamond, live",
         summary: "Turn the stone, move its index of refraction from water’s to beyond diamond’s, and see what each rung of the ladder \
-            leaves out: drag the wipe between two of them.",
+            leaves out: move the wipe between two of them.",
         rungs: STONE_RUNGS,
         other: "proxy-4+tracker",
         ladder: "convex",
+        timed_side: 256,
         technique: Technique::Convex,
         toggles: &[DISPERSION, FOOTPRINT],
         sliders: &[&INDEX, &DISPERSION_STRENGTH, &EXPOSURE],
@@ -114,6 +138,7 @@ pub const SCENES: [LiveScene; 5] = [
         rungs: STONE_RUNGS,
         other: "surface",
         ladder: "convex",
+        timed_side: 256,
         technique: Technique::Convex,
         toggles: &[DISPERSION, toggle(Effect::Absorption, "absorption inside", true), FOOTPRINT],
         sliders: &[&INDEX, &ABSORPTION, &DISPERSION_STRENGTH, &EXPOSURE],
@@ -127,6 +152,7 @@ pub const SCENES: [LiveScene; 5] = [
         rungs: &["drift", "accurate", "cheap", "wrap", "lambert"],
         other: "lambert",
         ladder: "cdrf",
+        timed_side: 512,
         technique: Technique::Cdrf,
         toggles: &[
             toggle(Effect::HalfSpace, "the law of a half space", true),
@@ -144,6 +170,7 @@ pub const SCENES: [LiveScene; 5] = [
         rungs: &["godunov-64", "godunov-32", "diffusion-64", "lambert-shadowed", "lambert"],
         other: "lambert-shadowed",
         ladder: "translucent",
+        timed_side: 512,
         technique: Technique::Translucent,
         toggles: &[AROUND, HIGHLIGHTS],
         sliders: &[&FREE_PATH, &ROUGHNESS, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],
@@ -157,6 +184,7 @@ pub const SCENES: [LiveScene; 5] = [
         rungs: &["diffusion-64", "diffusion-32", "godunov-64", "lambert-shadowed"],
         other: "lambert-shadowed",
         ladder: "translucent",
+        timed_side: 512,
         technique: Technique::Diffusion,
         toggles: &[AROUND],
         sliders: &[&FREE_PATH, &LIGHT_TURN, &LIGHT_POWER, &EXPOSURE],

@@ -2,7 +2,7 @@ use super::export::Manifest;
 use super::fields;
 use super::*;
 use base64::Engine as _;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::sync::LazyLock;
@@ -135,13 +135,41 @@ fn the_part_names_every_rung_and_slider_and_its_scripts_end_nowhere_else() {
     for live in &SCENES {
         let text = section(live).expect("a part").0;
         for rung in live.rungs {
-            assert_eq!(text.matches(&format!("<option>{rung}</option>")).count(), 2, "{rung}");
+            assert_eq!(text.matches(&format!("<option value=\"{rung}\">")).count(), 2, "{rung}");
         }
         for slider in live.sliders {
             assert!(text.contains(&format!("data-slider=\"{}\"", slider.name)));
         }
         assert_eq!(text.matches("</script").count(), 1);
     }
+}
+
+/// A measured time is drawn beside the ladder's, so it is of frames of the same size.
+#[test]
+fn a_timed_frame_is_the_ladders() {
+    let (folder, manifests, _) = &*EXPORTED;
+    for live in &SCENES {
+        let (report, side) = match live.ladder {
+            "convex" => (include_str!("../../../../../docs/measurements/lavapipe/gem.json"), "side"),
+            "cdrf" => (include_str!("../../../../../docs/measurements/lavapipe/cdrf.json"), "side"),
+            _ => (include_str!("../../../../../docs/measurements/lavapipe/translucent.json"), "width"),
+        };
+        let report: Value = serde_json::from_str(report).expect("JSON");
+        assert_eq!(report["settings"][side], live.timed_side, "{}", live.scene);
+        for (rung, of) in &manifests[live.scene].rungs {
+            let document: Value = serde_json::from_slice(&stored(folder.path(), &of.timed)).expect("JSON");
+            let size = json!([live.timed_side, live.timed_side]);
+            assert!(document["pictures"].as_array().expect("pictures").iter().all(|of| of["size"] == size), "{rung}");
+        }
+    }
+}
+
+#[test]
+fn a_menu_begins_with_the_defaults() {
+    let menu = scene("brilliant").menu();
+    let shown: Vec<_> = menu.iter().map(|(rung, qualities)| (*rung, qualities.as_str())).take(4).collect();
+    let expected = [("walk-8+tracker", "good"), ("walk-4", "fast"), ("walk-16+tracker", "best"), ("surface", "")];
+    assert_eq!(shown, expected);
 }
 
 /// One executor for the examples and the gallery, small enough to read.
