@@ -5,6 +5,7 @@
 //! that is of a technique is data.
 
 mod again;
+mod copying;
 mod export;
 mod fields;
 mod part;

@@ -126,6 +126,15 @@
     }
   };
 
+  /** Adds the star to a plot's legend, once. */
+  const explain = (svg) => {
+    const legend = svg.closest('figure')?.querySelector('.legend');
+    if (!legend || legend.querySelector('.of-visitor')) return;
+    const swatch = drawn('svg', { class: 'swatch visitor', viewBox: '-9 -9 18 18', width: 16, height: 16, 'aria-hidden': 'true' });
+    swatch.append(drawn('path', { class: 'mark', d: STAR }));
+    legend.append(made('li', { class: 'of-visitor' }, swatch, ' on your GPU'));
+  };
+
   /** Adds a point to one plot; a second one of the same label takes its place. */
   const plotted = (svg, ms, error, label) => {
     const place = svg.querySelector('.visitors');
@@ -143,6 +152,7 @@
       drawn('text', { class: 'label', x: toLeft ? -12 : 12, y: -9, 'text-anchor': toLeft ? 'end' : 'start' }, label),
     );
     place.append(point);
+    explain(svg);
     if (scale.x0 !== before.x0 || scale.x1 !== before.x1) {
       Object.assign(svg.dataset, { x0: scale.x0, x1: scale.x1 });
       relabel(svg, scale);

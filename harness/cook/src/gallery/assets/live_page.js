@@ -110,21 +110,15 @@ function chosen({ overrides }) {
   return { on: effects(true).map(name), off: effects(false).map(name), set: others.map((pair) => pair.join('=')) };
 }
 
-/** The command that writes a pipeline's recipe as it is drawn with. */
-function copying(pipeline) {
-  const { on, set } = chosen(pipeline);
-  const effects = ['--effects', on.length > 0 ? on.join() : '""'];
-  return ['./cook copy', pipeline.recipe, ...effects, ...set.flatMap((pair) => ['--set', pair])].join(' ');
-}
-
 /** Shows the commands, and what the first one leaves out. */
 function reflectCommands() {
   const { without } = moved();
   one('.live-command code').textContent = command();
   one('.live-left').textContent = without.length > 0 ? `The command has no option for the moved sliders, so it draws without: ${without.join(', ')}.` : '';
   one('.live-left').hidden = without.length === 0;
-  one('.live-copying').hidden = live.sides.length === 0;
-  if (live.sides.length > 0) one('.live-copying code').textContent = pipelines().map(copying).join('\n');
+  const copying = live.sides.length > 0 ? pipelines().flatMap(({ copy }) => copy ?? []) : [];
+  one('.live-copying').hidden = copying.length === 0;
+  one('.live-copying code').textContent = copying.join('\n');
 }
 
 /** Shows the state in the controls, the command and the address. */
@@ -304,7 +298,7 @@ function header(pipeline) {
     ...told,
     `Every binding is explained on recipes/${pipeline.recipe}.html of this gallery; their contents for this scene are written by`,
     `  ./cook frame ${scene} --rung ${name} --out FOLDER`,
-    `The cookbook's own text of it: ${copying(pipeline)}`,
+    ...(pipeline.copy ? [`The cookbook's own text of it: ${pipeline.copy}`] : []),
   ].map((line) => `// ${line}\n`).join('');
 }
 
@@ -340,7 +334,7 @@ async function measure() {
   // Where controls were moved, the picture is another one than what was timed.
   const { on, steps } = live.start;
   const isStart = ['on', 'steps'].every((of) => JSON.stringify(live.state[of]) === JSON.stringify({ on, steps }[of]));
-  const usual = isStart && !live.isTurned && !live.environment ? '' : ' It is the ladder’s frame, with all controls as at the start.';
+  const usual = isStart && !live.isTurned && !live.environment ? '' : ' Timed are the ladder’s frames, with all controls as at the start.';
   one('.live-time').textContent = `${each}, for ${drawn}, on ${adapterName()}.${usual}`;
   tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {

@@ -2,6 +2,7 @@
 
 use super::LiveError;
 use super::again::again;
+use super::copying;
 use super::fields::{self, Fields, Place};
 use super::scenes::{LiveScene, SAMPLES, SIDE, Toggle};
 use super::slider::{Moves, Slider};
@@ -224,12 +225,16 @@ fn make(scene: &Scene, settings: &Settings) -> Result<Made, LiveError> {
     Ok(Made { texts: texts?, document, frame })
 }
 
+/// The places of the pipelines of the pass that draws the scene, in the order of its draws.
+fn drawing(document: &Value) -> Vec<usize> {
+    let passes = document["passes"].as_array().into_iter().flatten();
+    let draws = passes.filter(|pass| pass["name"] == "scene").filter_map(|pass| pass["draws"].as_array()).flatten();
+    draws.filter_map(|draw| usize::try_from(draw["pipeline"].as_u64()?).ok()).collect()
+}
+
 /// The recipe of the first draw of the pass that draws the scene.
 fn recipe(document: &Value) -> String {
-    let passes = document["passes"].as_array().into_iter().flatten();
-    let mut drawn =
-        passes.filter(|pass| pass["name"] == "scene").filter_map(|pass| pass["draws"][0]["pipeline"].as_u64());
-    let pipeline = drawn.next().map_or(&Value::Null, |place| &document["pipelines"][place as usize]);
+    let pipeline = drawing(document).first().map_or(&Value::Null, |place| &document["pipelines"][*place]);
     pipeline["recipe"].as_str().unwrap_or_default().to_owned()
 }
 
@@ -239,6 +244,9 @@ fn store_frame(store: &mut Store, made: Made, moved: &BTreeSet<&str>) -> Result<
     let is_moved = |place: &usize| moved.contains(frame.resources[*place].name.as_str());
     let places = (0..frame.resources.len()).filter(is_moved).map(|place| place as u64);
     document["again"] = serde_json::to_value(again(&document, &texts, places))?;
+    for place in drawing(&document) {
+        document["pipelines"][place]["copy"] = copying::command(&document["pipelines"][place]).into();
+    }
     for (place, text) in texts.iter().enumerate() {
         document["pipelines"][place]["wgsl"] = store.put(text.as_bytes())?.into();
     }

@@ -32,6 +32,19 @@ fn stored(site: &Path, name: &str) -> Vec<u8> {
     bytes
 }
 
+/// A `cook copy` command names effects and overrides that the text has, with values of their types.
+fn copies(command: &str) {
+    let words: Vec<&str> = command.strip_prefix("./cook copy ").expect("a command").split(' ').collect();
+    let [name, "--effects", effects, set @ ..] = &words[..] else { panic!("{command}") };
+    let recipe = lapidary_wgsl::RECIPES.iter().find(|recipe| recipe.name == *name).expect("a recipe");
+    let effects: Vec<&str> = effects.trim_matches('"').split(',').filter(|effect| !effect.is_empty()).collect();
+    let text = crate::cookbook::marks::with_effects(recipe, Some(&effects), &[]).expect("a text");
+    let pairs = set.iter().filter(|word| **word != "--set").map(|word| word.split_once('=').expect("a pair"));
+    let text = lapidary_translate::fitted::with_constants(&text, &pairs.collect::<Vec<_>>(), &[]);
+    let text = text.unwrap_or_else(|error| panic!("{command}: {error}"));
+    naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{command}: {error}"));
+}
+
 /// Every frame of a scene is whole: all that it names is stored, its shaders are valid, and each field that a slider
 /// moves stands in one of its buffers, or the buffer is left out with its effect.
 fn is_whole(name: &str) {
@@ -53,6 +66,10 @@ fn is_whole(name: &str) {
                 let text = String::from_utf8(text).expect("text");
                 naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{rung} {effects}: {error}"));
             }
+            let commands = document["pipelines"].as_array().expect("pipelines").iter().map(|row| &row["copy"]);
+            let commands: Vec<&str> = commands.filter_map(Value::as_str).collect();
+            assert!(!commands.is_empty(), "{rung} {effects}: no text of the cookbook draws it");
+            commands.into_iter().for_each(copies);
             // What the camera changes is the scene's pass and what follows, not what was solved before.
             let view = resources.iter().position(|row| row["name"] == "view").expect("a view").to_string();
             let again: Vec<u64> =
