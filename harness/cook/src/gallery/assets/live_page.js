@@ -80,6 +80,9 @@ function moved() {
   return { sliders, without: [...without, ...(isNear ? [] : ['the distance of the eye'])] };
 }
 
+/** A word as a shell takes it. */
+const quoted = (word) => (/^[\w.-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+
 /** The command that draws it, as far as there are options for it. */
 function command() {
   const { manifest, state } = live;
@@ -89,7 +92,7 @@ function command() {
   }
   for (const [name, { option, values }] of moved().sliders) if (option) words.push(option, values[state.steps[name]]);
   if (live.isTurned) words.push('--from', `${round(state.polar)},${round(state.azimuth)}`);
-  if (live.environment) words.push('--environment', live.environment.name ?? 'FILE');
+  if (live.environment) words.push('--environment', quoted(live.environment.name ?? 'FILE'));
   return words.filter((word) => word !== '').join(' ');
 }
 
@@ -114,7 +117,7 @@ function chosen({ overrides }) {
 function reflectCommands() {
   const { without } = moved();
   one('.live-command code').textContent = command();
-  one('.live-left').textContent = without.length > 0 ? `The command has no option for the moved sliders, so it draws without: ${without.join(', ')}.` : '';
+  one('.live-left').textContent = without.length > 0 ? `The command has no option for what was moved here, so it draws without: ${without.join(', ')}.` : '';
   one('.live-left').hidden = without.length === 0;
   const copying = live.sides.length > 0 ? pipelines().flatMap(({ copy }) => copy ?? []) : [];
   one('.live-copying').hidden = copying.length === 0;
