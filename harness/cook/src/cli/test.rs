@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 }
 
 /// Tests that a quick run skips: those whose names contain one of these.
-const SLOW: [&str; 37] = [
+const SLOW: [&str; 40] = [
     "allowance::",
     "antialiasing::",
     "atlas::",
@@ -49,6 +49,9 @@ const SLOW: [&str; 37] = [
     "footprint::",
     "formulas::every",
     "furnace::",
+    "gallery_live::",
+    "gallery_pages::",
+    "gallery_rows::",
     "gem::",
     "languages::",
     "optical_path::",

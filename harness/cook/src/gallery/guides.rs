@@ -18,8 +18,11 @@ const fn guide(name: &'static str, file: &'static str, title: &'static str) -> G
 }
 
 /// What to read to take and to choose.
-pub const GUIDES: [Guide; 17] = [
+pub const GUIDES: [Guide; 20] = [
     guide("choosing", "docs/choosing.md", "Which rung to choose"),
+    guide("gem", "docs/gem.md", "Clear stones in full"),
+    guide("cdrf_shading", "docs/cdrf_shading.md", "Skin, wax and jade in full"),
+    guide("optical_path_shading", "docs/optical_path_shading.md", "Optical paths in full"),
     guide("gem_proxy", "docs/gem_proxy.md", "Where the proxy is wrong"),
     guide("plan", "docs/plan.md", "Only the effects a scene calls for"),
     guide("scene_files", "docs/scene_files.md", "Scene files"),

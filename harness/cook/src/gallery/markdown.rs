@@ -61,6 +61,10 @@ pub struct Image {
 pub trait Links {
     /// Returns the address of what a link's target is on the site; `None` if the site does not have it.
     fn page(&self, target: &str) -> Option<String>;
+    /// Returns the address of the page that the text is of, if it stands on another one.
+    fn own(&self) -> &str {
+        ""
+    }
     /// Returns the picture of that target; `None` if the site does not have it.
     fn image(&self, target: &str) -> Option<Image>;
 }
@@ -191,6 +195,8 @@ fn render(block: Vec<Event<'_>>, links: &dyn Links) -> Markup {
     let mut image: Option<(Option<Image>, String)> = None;
     // Whether each open link is kept.
     let mut kept = Vec::new();
+    // Whether a place to link to is open.
+    let mut placed = false;
     for event in block {
         if let (Some((_, text)), Event::Text(more)) = (&mut code, &event) {
             text.push_str(more);
@@ -262,7 +268,16 @@ fn render(block: Vec<Event<'_>>, links: &dyn Links) -> Markup {
             },
             Event::DisplayMath(latex) => display(&latex),
             Event::InlineMath(latex) => formula(&latex),
-            Event::InlineHtml(text) if text.starts_with("<!--") => continue,
+            Event::InlineHtml(text) if text.starts_with("<!--") || (&*text == "</a>" && placed) => {
+                placed = false;
+                continue;
+            }
+            // A place to link to, without a heading.
+            Event::InlineHtml(text) if text.starts_with("<a id=\"") => {
+                placed = true;
+                let id = text.split('"').nth(1).map(slug).unwrap_or_default();
+                part(Part { kind: "place", id: &id, ..Part::default() })
+            }
             Event::Html(text) | Event::InlineHtml(text) => {
                 events.push(Event::Text(text));
                 continue;
@@ -300,7 +315,7 @@ fn address(target: &str, links: &dyn Links) -> Option<String> {
         return Some(target.to_owned());
     }
     let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-    let page = if file.is_empty() { String::new() } else { links.page(file)? };
+    let page = if file.is_empty() { links.own().to_owned() } else { links.page(file)? };
     Some(if anchor.is_empty() { page } else { [&page, "#", &slug(anchor)].concat() })
 }
 
@@ -308,7 +323,7 @@ fn address(target: &str, links: &dyn Links) -> Option<String> {
 mod tests {
     use super::*;
 
-    const PAGE: &str = r"# fresnel
+    const PAGE: &str = r#"# fresnel
 
 Lead with `<f32>`, $n < 2$.
 
@@ -325,13 +340,13 @@ by x -->
 |---|---|
 | 1 | 2 |
 
-See [it](srgb.md#hard-cases), [web](https://x.org/?a&b), [lost](../x.rs), vec3<f32>, <script>x</script>.
+<a id="Far off"></a>See [it](srgb.md#hard-cases), [web](https://x.org/?a&b), [lost](../x.rs), vec3<f32>, <script>x</script>.
 ![a `stone`](stone.png) ![lost](lost.png)
 
 ```wgsl
 fn f() {}
 ```
-";
+"#;
 
     struct Few;
 
@@ -360,6 +375,7 @@ fn f() {}
             "<div class=\"table scroll\"><table>",
             "<a href=\"../modules/srgb.html#hard-cases\">it</a>",
             "<a href=\"https://x.org/?a&amp;b\">web</a>",
+            "<span id=\"far-off\"></span>See",
             ", lost, vec3&lt;f32&gt;, &lt;script&gt;x",
             "<img src=\"small.jpg\" width=\"2\" height=\"1\" loading=\"lazy\" alt=\"a stone\">",
             "<span class=\"k\">fn</span>",

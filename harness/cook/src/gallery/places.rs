@@ -3,7 +3,6 @@
 use super::guides::{ENGINES, GUIDES};
 use super::markdown::{Image, Links};
 use super::pictures::Shown;
-use super::techniques::TECHNIQUES;
 use crate::cookbook;
 use std::collections::BTreeMap;
 
@@ -38,9 +37,6 @@ impl Places {
         for guide in GUIDES.iter().chain(&ENGINES) {
             put(guide.file.to_owned(), format!("guides/{}.html", guide.name));
         }
-        for technique in TECHNIQUES.iter().filter(|technique| cookbook::module(technique.doc).is_none()) {
-            put(format!("docs/{}.md", technique.doc), format!("techniques/{}.html", technique.name));
-        }
         put("README.md".to_owned(), "index.html".to_owned());
         put("snapshots/README.md".to_owned(), "pictures.html".to_owned());
         let pictures = shown.iter().filter_map(|shown| {
@@ -57,7 +53,12 @@ impl Places {
 
     /// Returns the links of a file of the repository, shown on a page in a folder of the site.
     pub fn of<'a>(&'a self, file: &'a str) -> FileLinks<'a> {
-        FileLinks { places: self, folder: file.rsplit_once('/').map_or("", |(folder, _)| folder) }
+        self.of_part(file, "")
+    }
+
+    /// Returns the links of a part of a file, whose whole is shown on that page.
+    pub fn of_part<'a>(&'a self, file: &'a str, own: &'a str) -> FileLinks<'a> {
+        FileLinks { places: self, folder: file.rsplit_once('/').map_or("", |(folder, _)| folder), own }
     }
 }
 
@@ -66,6 +67,7 @@ impl Places {
 pub struct FileLinks<'a> {
     places: &'a Places,
     folder: &'a str,
+    own: &'a str,
 }
 
 impl FileLinks<'_> {
@@ -90,6 +92,10 @@ impl Links for FileLinks<'_> {
         Some(["../", self.places.pages.get(&self.path(target))?].concat())
     }
 
+    fn own(&self) -> &str {
+        self.own
+    }
+
     fn image(&self, target: &str) -> Option<Image> {
         let image = self.places.pictures.get(&self.path(target))?;
         Some(Image { file: ["../", &image.file].concat(), thumb: ["../", &image.thumb].concat(), ..image.clone() })
@@ -107,7 +113,7 @@ mod tests {
         assert_eq!(links.page("../absorption.md").as_deref(), Some("../modules/absorption.html"));
         assert_eq!(links.page("README.md").as_deref(), Some("../guides/recipes.html"));
         assert_eq!(links.page("../../wgsl/recipes/gem_walk.wgsl").as_deref(), Some("../recipes/gem_walk.html"));
-        assert_eq!(links.page("../gem.md").as_deref(), Some("../techniques/gems.html"));
+        assert_eq!(links.page("../gem.md").as_deref(), Some("../guides/gem.html"));
         assert_eq!(links.page("../../../etc/passwd"), None);
         assert_eq!(links.image("../../snapshots/gem/brilliant.png"), None);
     }

@@ -29,11 +29,8 @@ struct Values<'a> {
     lead: Markup,
     equation: Markup,
     introduction: Markup,
-    rest: Markup,
-    /// The rest's headings.
-    headings: Vec<&'a super::super::markdown::Heading>,
-    /// The doc page that holds the rest, if it is a module's own.
-    module: Option<&'a str>,
+    /// The page that says everything about it.
+    whole: String,
     takes: Vec<&'a super::super::take::Take>,
     diagrams: Vec<&'a super::super::DrawnDiagram>,
     ladders: Vec<&'a Markup>,
@@ -49,13 +46,17 @@ struct Guide {
     title: &'static str,
 }
 
+/// Diagrams on a technique's page; each module's page has its own.
+const MOST_DIAGRAMS: usize = 4;
+
 /// Returns the page of a technique.
 pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     let path = ["techniques/", of.name, ".html"].concat();
     let file = ["docs/", of.doc, ".md"].concat();
-    let doc = markdown::page(&parts.doc(&file), &parts.places.of(&file));
-    let headings = doc.headings.clone();
-    let module = cookbook::module(of.doc).map(|module| module.name);
+    // The doc page is a module's own, or a guide.
+    let kind = if cookbook::module(of.doc).is_some() { "modules" } else { "guides" };
+    let whole = ["../", kind, "/", of.doc, ".html"].concat();
+    let doc = markdown::page(&parts.doc(&file), &parts.places.of_part(&file, &whole));
     let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
     let hero = parts.pictures.iter().find(|picture| picture.name == of.hero);
     let guide = |name: &str| {
@@ -72,12 +73,11 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         lead: doc.lead,
         equation: doc.equation,
         introduction: doc.introduction,
-        rest: if module.is_some() { Markup::default() } else { doc.rest },
-        headings: headings.iter().filter(|heading| heading.level == 2 && module.is_none()).collect(),
-        module,
+        whole,
         takes: parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder)).collect(),
-        diagrams: parts.diagrams.iter().filter(|diagram| of.modules.contains(&diagram.module)).collect(),
-        ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
+        diagrams: diagrams(parts, of),
+        // The first; the guides have the others.
+        ladders: of.ladders.iter().take(1).filter_map(|name| parts.ladders.get(*name)).collect(),
         pictures: parts.pictures.iter().filter(shown).collect(),
         guides: std::iter::once("choosing").chain(of.guides.iter().copied()).filter_map(guide).collect(),
         modules: of.modules.iter().copied().map(named).collect(),
@@ -93,9 +93,6 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
             Entry::rung(&step.rung, kind.title, &path, figures)
         }));
     }
-    if module.is_none() {
-        page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
-    }
     page
 }
 
@@ -106,4 +103,10 @@ pub fn purpose(name: &str) -> String {
         Some(cookbook::header::parse_header(recipe.source).ok()?.purpose)
     };
     cookbook::module(name).map(|module| module.header.purpose.clone()).or_else(recipe).unwrap_or_default()
+}
+
+/// Returns the diagrams of the modules that are most its own.
+fn diagrams<'a>(parts: &'a Parts<'_>, of: &Technique) -> Vec<&'a super::super::DrawnDiagram> {
+    let of_module = |name: &&str| parts.diagrams.iter().find(|diagram| diagram.module == *name);
+    of.modules.iter().filter_map(of_module).take(MOST_DIAGRAMS).collect()
 }
