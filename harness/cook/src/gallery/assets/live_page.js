@@ -24,7 +24,7 @@ function tell(text, failed = false) {
 
 // The state and the address.
 
-const round = (value) => Number(value.toFixed(2));
+const round = (value) => Number(value.toFixed(4));
 const clamped = (value, least, most) => Math.min(Math.max(value, least), most);
 
 /** The eye at these angles in degrees, no nearer and no further than makes sense. */
@@ -187,9 +187,12 @@ function failed(error) {
 }
 
 let [losses, since] = [0, 0];
+// How often a device was lost in all: by it `begin` sees that its own was lost meanwhile.
+let lostDevices = 0;
 
 /** Replaces a lost device by another one, but not for ever. */
 async function lost(message) {
+  lostDevices += 1;
   losses = performance.now() - since > LASTING ? 1 : losses + 1;
   if (losses > MOST_LOSSES) return failed(new Error('The graphics device was lost again and again'));
   tell(`The graphics device was lost, so the scene starts on a new one. ${message}`, true);
@@ -207,8 +210,12 @@ function adapterName() {
 async function begin() {
   try {
     since = performance.now();
+    const before = lostDevices;
     await live.open(lost);
     await live.draw();
+    // What is drawn on a lost device ends too, and the loss may be told a moment later.
+    await Promise.race([live.device.lost, new Promise((resolve) => setTimeout(resolve, 0))]);
+    if (lostDevices !== before) return;
     [canvas.hidden, image.hidden, run.hidden] = [false, true, true];
     one('.live-controls').disabled = false;
     one('.live-device').hidden = false;

@@ -49,7 +49,10 @@ mod tests {
     fn a_command_names_what_is_on_and_the_constants_that_are_left() {
         let overrides = json!({"BOUNCES": 8.0, "END_AT_FIRST_EXIT": 0.0, "SCREEN_STEPS": 8.0, "EFFECT_CONVEX_TRACE": 1.0, "EFFECT_DISPERSION": 0.0});
         let found = command(&json!({"recipe": "gem_walk", "overrides": overrides}));
-        assert_eq!(found.as_deref(), Some("./cook copy gem_walk --effects convex_trace --set BOUNCES=8 --set END_AT_FIRST_EXIT=false"));
+        assert_eq!(
+            found.as_deref(),
+            Some("./cook copy gem_walk --effects convex_trace --set BOUNCES=8 --set END_AT_FIRST_EXIT=false")
+        );
         assert_eq!(command(&json!({"recipe": "none", "overrides": {}})), None);
     }
 }

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// Width and height of a live picture in pixels: the largest that is drawn without tiles.
 pub const SIDE: u32 = 512;
 /// Samples along each side of a pixel.
-pub const SAMPLES: u32 = 2;
+pub const SAMPLES: u32 = 3;
 
 /// A scene that a page draws live.
 #[derive(Debug)]
