@@ -71,3 +71,11 @@ fn names(page: &mut Page, of: &str) -> Vec<String> {
     let names = page.evaluate(&format!("Object.keys(gallery.live.manifest.{of})")).expect("a manifest");
     names.as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect()
 }
+
+/// Whether a test that takes long runs: `.ci/run` is content with one canvas, `.ci/full` runs all.
+fn runs_whole(test: &str) -> bool {
+    if !crate::whole() {
+        eprintln!("gallery_live: {test}: with LAPIDARY_WHOLE=1");
+    }
+    crate::whole()
+}

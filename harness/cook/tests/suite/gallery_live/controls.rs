@@ -45,6 +45,9 @@ fn every_slider_changes_the_picture() {
 /// Left of the wipe is one rung, right of it the other.
 #[test]
 fn a_wipe_stands_between_two_rungs() {
+    if !super::runs_whole("a_wipe_stands_between_two_rungs") {
+        return;
+    }
     let Some(mut page) = running("brilliant", "") else { return };
     let one = shown(&mut page);
     let rung = page.evaluate("gallery.live.state.rung").expect("a state");
@@ -65,6 +68,9 @@ fn a_wipe_stands_between_two_rungs() {
 /// An effect is another shader, which the copied text shows, and it compiles.
 #[test]
 fn an_effect_is_another_shader() {
+    if !super::runs_whole("an_effect_is_another_shader") {
+        return;
+    }
     for scene in some_scenes() {
         let Some(mut page) = running(scene, "") else { return };
         page.grant_clipboard().expect("granted");
@@ -133,6 +139,9 @@ fn the_address_holds_the_state() {
 /// By keys, by the mouse, and by the wheel.
 #[test]
 fn the_eye_is_moved() {
+    if !super::runs_whole("the_eye_is_moved") {
+        return;
+    }
     let Some(mut page) = running("brilliant", "") else { return };
     let before = shown(&mut page);
     let state = "(({ polar, azimuth, distance }) => [polar, azimuth, distance])(gallery.live.state)";
@@ -164,6 +173,9 @@ fn the_eye_is_moved() {
 /// The time is the visitor's own, and stands in the plot.
 #[test]
 fn a_measured_time_is_drawn_into_the_plot() {
+    if !super::runs_whole("a_measured_time_is_drawn_into_the_plot") {
+        return;
+    }
     let Some(mut page) = running("brilliant", "") else { return };
     page.click("[data-do=time]").expect("a button");
     let text = page.wait_for("document.querySelector('.live-time').textContent", super::DRAWN).expect("a time");

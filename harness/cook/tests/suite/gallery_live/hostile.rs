@@ -51,6 +51,9 @@ fn without_a_device_the_picture_stands_there() {
 /// Half of what WebGPU's least device has suffices.
 #[test]
 fn half_the_limits_are_enough() {
+    if !super::runs_whole("half_the_limits_are_enough") {
+        return;
+    }
     let Some(mut page) = started() else { return };
     let halved = "
         const all = Object.getOwnPropertyDescriptor(GPUAdapter.prototype, 'limits').get;
@@ -86,6 +89,9 @@ fn a_lost_device_is_replaced() {
 /// A device that is lost again and again is given up, until one asks for it.
 #[test]
 fn a_device_that_does_not_last_is_given_up() {
+    if !super::runs_whole("a_device_that_does_not_last_is_given_up") {
+        return;
+    }
     let Some(mut page) = started() else { return };
     let lost = "
         const request = GPUAdapter.prototype.requestDevice;
@@ -124,6 +130,9 @@ fn drop_file(page: &mut Page, name: &str, base64: &str) {
 
 #[test]
 fn a_dropped_environment_lights_and_another_file_is_refused() {
+    if !super::runs_whole("a_dropped_environment_lights_and_another_file_is_refused") {
+        return;
+    }
     use base64::Engine as _;
     let base64 = |bytes: &[u8]| base64::prelude::BASE64_STANDARD.encode(bytes);
     let Some(mut page) = running("brilliant", "") else { return };
