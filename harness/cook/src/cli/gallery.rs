@@ -72,6 +72,10 @@ fn rustdoc(root: &Path) -> Result<PathBuf, Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     // A target folder of its own: it holds these crates alone, whatever else was documented.
     let target = root.join("target/rustdoc");
+    // Pages of modules that are gone would stay.
+    if target.join("doc").exists() {
+        std::fs::remove_dir_all(target.join("doc"))?;
+    }
     let mut command = Command::new(cargo);
     command.current_dir(root).args(["doc", "--no-deps", "--quiet", "--lib", "--target-dir"]).arg(&target);
     command.args(

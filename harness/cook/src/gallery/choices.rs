@@ -72,6 +72,10 @@ fn filled(report: &Report, rung: &str) -> Option<f64> {
     report.rows.iter().find(|row| row.rung == rung && row.view == "filled" && row.measure == "time")?.ms
 }
 
+/// What the times are of.
+pub const NOTE: &str = "The GPU is an NVIDIA H200: stones fill a frame of 1920 × 1080, the others are 512 × 512, one sample a pixel. \
+    The CPU runs lavapipe, with stones of 256 × 256 pixels. Errors and those times are means over each ladder's views.";
+
 /// Returns the choices as the table of `docs/choosing.md`.
 pub fn table() -> Table {
     Table::of("choices", "", all())
@@ -82,8 +86,5 @@ pub fn table() -> Table {
         .column("ms, a GPU", |choice| choice.gpu.clone())
         .column("ms, two CPU cores", |choice| choice.ms.clone())
         .column("× fast", |choice| choice.times.clone())
-        .note(
-            "The GPU is an NVIDIA H200: stones fill a frame of 1920 × 1080, the others are 512 × 512, one sample a pixel. The CPU runs \
-             lavapipe, with stones of 256 × 256 pixels. Errors and those times are means over each ladder's views.",
-        )
+        .note(NOTE)
 }

@@ -19,6 +19,7 @@ pub use export::settings;
 pub use part::section;
 pub use scenes::{LiveScene, SAMPLES, SCENES, SIDE};
 
+use super::data::DataError;
 use lapidary_gpu::Gpu;
 use lapidary_render::RenderError;
 use lapidary_render::file::FileError;
@@ -60,10 +61,13 @@ pub enum LiveError {
         /// What differs.
         what: String,
     },
-    /// A file cannot be written.
-    #[error("{}: cannot be written: {error}", path.display())]
-    File {
-        /// The file.
+    /// A frame cannot be written.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A folder cannot be made.
+    #[error("{}: cannot be made: {error}", path.display())]
+    Folder {
+        /// The folder.
         path: PathBuf,
         /// The system's error.
         error: std::io::Error,
@@ -77,21 +81,21 @@ pub fn poster(live: &LiveScene) -> String {
 }
 
 /// Writes the data of all live scenes to `data/live` of a site's folder, and the pictures that stand in their place
-/// before they run to `images/live`; returns the bytes of the data.
+/// before they run to `images/live`.
 ///
 /// # Errors
 /// If a scene cannot be drawn or a file not be written.
-pub fn write(folder: &Path, gpu: &Gpu) -> Result<u64, LiveError> {
-    let mut store = Store::new(folder)?;
+pub fn write(folder: &Path, gpu: &Gpu) -> Result<(), LiveError> {
+    let mut store = Store::new(folder);
     let images = folder.join("images/live");
-    std::fs::create_dir_all(&images).map_err(|error| LiveError::File { path: images, error })?;
+    std::fs::create_dir_all(&images).map_err(|error| LiveError::Folder { path: images, error })?;
     for live in &SCENES {
         write_scene(live, &mut store)?;
         let settings = settings(live, live.rungs[0], |toggle| toggle.on)?;
         let picture = lapidary_render::render(gpu, &Scene::named(live.scene)?, &settings)?;
         lapidary_render::file::write(&picture, &folder.join(poster(live)))?;
     }
-    Ok(store.bytes())
+    Ok(())
 }
 
 fn write_scene(live: &LiveScene, store: &mut Store) -> Result<export::Manifest, LiveError> {

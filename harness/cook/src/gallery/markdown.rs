@@ -291,7 +291,7 @@ fn render(block: Vec<Event<'_>>, links: &dyn Links) -> Markup {
     }
     let mut written = String::new();
     html::push_html(&mut written, events.into_iter());
-    // A heading without words heads nothing.
+    // A heading without words heads nothing; the library writes it as a heading all the same.
     Markup(written.replace("<th></th>", "<td></td>"))
 }
 

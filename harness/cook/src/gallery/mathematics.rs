@@ -28,7 +28,7 @@ pub fn math(latex: &str, display_mode: DisplayMode) -> Result<String, MathError>
     Ok(mended(&html))
 }
 
-/// Mends what browsers set badly of pulldown-latex's MathML: a control space that is escaped twice; the micro sign for
+/// Mends what browsers set badly of pulldown-latex's MathML, in its own text, since the library has no tree to change: a control space that is escaped twice; the micro sign for
 /// `\mu`, which no browser makes italic; a slash, which is an operator to MathML and spaced like one, but none to TeX;
 /// the arrows of vectors, which stand like limits above a sum unless they are accents; the space before an operator's
 /// name, which is written into the element of its limits as a child too many.

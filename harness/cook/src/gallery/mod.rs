@@ -2,6 +2,7 @@
 //! complete WGSL to copy. It can be read from disk, without a network.
 
 pub mod choices;
+mod data;
 mod guides;
 mod highlight;
 pub mod ladder;
@@ -85,6 +86,9 @@ pub enum GalleryError {
     /// The property rows were not written.
     #[error(transparent)]
     Rows(#[from] rows::RowsError),
+    /// What pages load on demand was not written.
+    #[error(transparent)]
+    Data(#[from] data::DataError),
     /// The folder was not written.
     #[error(transparent)]
     Folder(#[from] FolderError),
@@ -151,8 +155,11 @@ struct Parts<'a> {
 
 impl Parts<'_> {
     /// Returns the text of a doc page.
-    fn doc(&self, file: &str) -> String {
-        self.docs.get(file).cloned().unwrap_or_default()
+    ///
+    /// # Panics
+    /// If the page was not read, which [`docs`] does for all that are shown.
+    fn doc(&self, file: &str) -> &str {
+        self.docs.get(file).unwrap_or_else(|| panic!("{file} was not read"))
     }
 }
 
@@ -160,8 +167,8 @@ impl Parts<'_> {
 /// unchanged, and the same site gives the same bytes.
 ///
 /// # Errors
-/// Returns an error if a picture or a doc page is missing, the file system fails, or `out` contains anything that an
-/// earlier call did not write.
+/// Returns an error if a picture or a doc page is missing, a ladder, a live scene or a shader cannot be drawn, the file
+/// system fails, or `out` contains anything that an earlier call did not write.
 pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
     let folder = folder::replace(out, OWNER, |folder| write_into(folder, site))?;
     Ok(folder.join("index.html"))
@@ -209,7 +216,7 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     for (name, bytes) in ASSETS {
         put(folder, &["assets/", name].concat(), bytes)?;
     }
-    put(folder, "assets/mark.svg", templates::render("mark.svg", minijinja_mark()).0.as_bytes())?;
+    put(folder, "assets/mark.svg", templates::render("mark.svg", ICON).0.as_bytes())?;
     write_data(folder, &pages, &parts.takes)?;
     if let Some(rustdoc) = &site.rustdoc {
         copy_folder(rustdoc, &folder.join("rustdoc"))?;
@@ -227,32 +234,34 @@ fn short(adapter: &str) -> &str {
 /// Writes what pages load on demand: the sources and the index of the search.
 fn write_data(folder: &Path, pages: &[Page], takes: &[Take]) -> Result<(), GalleryError> {
     for take in takes {
-        put_data(folder, &take.source, &take.text)?;
+        data::deliver(folder, &take.source, &take.text)?;
     }
     let entries: Vec<_> = pages.iter().flat_map(|page| &page.entries).collect();
-    put_data(folder, "search", &entries)?;
+    data::deliver(folder, "search", &entries)?;
     for module in cookbook::modules() {
-        put_data(folder, &["source/", module.name].concat(), &module.source)?;
+        data::deliver(folder, &["source/", module.name].concat(), &module.source)?;
     }
     for recipe in lapidary_wgsl::RECIPES {
-        put_data(folder, &["source/recipe_", recipe.name].concat(), &source_of_recipe(recipe))?;
+        data::deliver(folder, &["source/recipe_", recipe.name].concat(), &source_of_recipe(recipe))?;
     }
     Ok(())
 }
 
 /// Returns the text of a recipe to paste, as `cook copy` writes it.
+///
+/// # Panics
+/// If the recipe's marks are not well formed, which a test of all recipes finds.
 fn source_of_recipe(recipe: &Recipe) -> String {
-    marks::without(recipe, &[]).unwrap_or_else(|_| recipe.compose())
+    marks::without(recipe, &[]).unwrap_or_else(|fault| panic!("{}:{}: {}", recipe.name, fault.line, fault.message))
 }
 
+/// The site's icon, for its template.
 #[derive(Serialize)]
 struct Mark {
     mark: &'static str,
 }
 
-fn minijinja_mark() -> Mark {
-    Mark { mark: pages::MARK }
-}
+const ICON: Mark = Mark { mark: pages::MARK };
 
 /// Writes a file of the site.
 fn put(folder: &Path, path: &str, bytes: &[u8]) -> Result<(), GalleryError> {
@@ -261,14 +270,6 @@ fn put(folder: &Path, path: &str, bytes: &[u8]) -> Result<(), GalleryError> {
     let fault = |source| FolderError::Write { path: file.clone(), source };
     fs::create_dir_all(parent).map_err(fault)?;
     Ok(fs::write(&file, bytes).map_err(fault)?)
-}
-
-/// Writes a value that pages load by its name: a script that hands it over, which a browser also loads from a file.
-fn put_data(folder: &Path, name: &str, value: &impl Serialize) -> Result<(), GalleryError> {
-    let json = |value: serde_json::Result<String>| value.unwrap_or_default();
-    let script =
-        ["gallery.deliver(", &json(serde_json::to_string(name)), ", ", &json(serde_json::to_string(value)), ");\n"];
-    put(folder, &["data/", name, ".js"].concat(), script.concat().as_bytes())
 }
 
 fn read(path: PathBuf) -> Result<String, GalleryError> {
@@ -310,7 +311,8 @@ fn copy_folder(from: &Path, to: &Path) -> Result<(), GalleryError> {
     fs::create_dir_all(to).map_err(write)?;
     for entry in fs::read_dir(from).map_err(read)? {
         let path = entry.map_err(read)?.path();
-        let Some(name) = path.file_name() else { continue };
+        // Cargo keeps a lock there.
+        let Some(name) = path.file_name().filter(|name| !name.as_encoded_bytes().starts_with(b".")) else { continue };
         if path.is_dir() {
             copy_folder(&path, &to.join(name))?;
         } else {

@@ -1,12 +1,13 @@
 //! "Edit a function and check it": for every function with a bound, inputs as `cook check` draws them and the
 //! results that hold there on any device that conforms to WGSL, as data that a page judges by; and the editor.
 //!
-//! `data/rows/MODULE.js` holds a module's text, `data/rows/FUNCTION.js` a function's kernel and its rows: the hard
+//! `data/rows/FUNCTION.js` holds a function's kernel and its rows: the hard
 //! cases, [`DRAWN`] random inputs, and one more input for each edge of the domain that those miss. Intervals come
 //! from [`lapidary_assay::property::accepted`], which shares its code with the check's judgement.
 
 mod pack;
 
+use super::data::{self, DataError};
 use super::templates::{self, Markup};
 use crate::cookbook::header::FunctionDoc;
 use crate::cookbook::{self, Module};
@@ -21,8 +22,7 @@ use lapidary_assay::slack::Reassociation;
 use lapidary_assay::tolerance::Accepted;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::path::Path;
 
 /// Random inputs of a function, the first that `cook check` draws.
 pub const DRAWN: u64 = 512;
@@ -39,13 +39,8 @@ pub enum RowsError {
         error: DispatchError,
     },
     /// A file cannot be written.
-    #[error("{} cannot be written: {source}", path.display())]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// The underlying error.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Data(#[from] DataError),
 }
 
 /// What was written.
@@ -57,12 +52,6 @@ pub struct Summary {
     pub rows: usize,
     /// Size of all files in bytes.
     pub bytes: usize,
-}
-
-/// A module as the page loads it.
-#[derive(Serialize)]
-struct ModuleData<'a> {
-    text: &'a str,
 }
 
 /// A function as the page loads it.
@@ -119,8 +108,7 @@ struct Part {
     bound: String,
 }
 
-/// Writes the rows of every function with a bound, and the texts of their modules, into `data/rows` of the site's
-/// folder.
+/// Writes the rows of every function with a bound into `data/rows` of the site's folder.
 ///
 /// # Errors
 /// Returns an error if the file system fails.
@@ -133,20 +121,15 @@ pub fn write(folder: &Path) -> Result<Summary, RowsError> {
 /// # Errors
 /// Returns an error if the file system fails.
 pub fn write_of(folder: &Path, selects: impl Fn(&Module) -> bool + Sync) -> Result<Summary, RowsError> {
-    let rows = folder.join("data/rows");
-    fs::create_dir_all(&rows).map_err(|source| RowsError::Write { path: rows.clone(), source })?;
     let modules: Vec<&Module> = cookbook::modules().iter().filter(|module| selects(module)).collect();
     let functions: Vec<(&Module, &FunctionDoc, &Formula)> =
         modules.iter().flat_map(|module| checked(module).map(|(doc, formula)| (*module, doc, formula))).collect();
     let mut summary = Summary { functions: functions.len(), ..Summary::default() };
-    for module in modules.iter().filter(|module| checked(module).next().is_some()) {
-        summary.bytes += deliver(&rows, module.name, &ModuleData { text: module.source })?;
-    }
     // Functions take very different times.
     let written: Vec<(usize, usize)> = functions
         .par_iter()
         .with_max_len(1)
-        .map(|(module, doc, formula)| write_function(&rows, module, doc, formula))
+        .map(|(module, doc, formula)| write_function(folder, module, doc, formula))
         .collect::<Result<_, _>>()?;
     for (count, bytes) in written {
         summary.rows += count;
@@ -156,7 +139,7 @@ pub fn write_of(folder: &Path, selects: impl Fn(&Module) -> bool + Sync) -> Resu
 }
 
 /// Returns the editor of a module's functions, or `None` if none of them has a bound. Its page needs
-/// `assets/check.css`, `assets/check.js` and the files of [`write()`].
+/// `assets/check.css`, `assets/check.js`, `assets/editor.js`, `data/source/MODULE.js` and the files of [`write()`].
 pub fn editor(module: &Module) -> Option<Markup> {
     #[derive(Serialize)]
     struct Function<'a> {
@@ -211,7 +194,7 @@ fn write_function(
     let tolerance = check::tolerance(check::On::Slack(Reassociation::Written), formula);
     let accepted: Vec<Vec<Accepted>> = rows.par_iter().map(|row| accepted(formula, &tolerance, row)).collect();
     let exact: Vec<Vec<f64>> = rows.iter().map(|row| formula.exact(row)).collect();
-    let data = FunctionData {
+    let values = FunctionData {
         function: formula.function,
         module: formula.module,
         accuracy: promise(doc),
@@ -228,7 +211,7 @@ fn write_function(
         seed,
         rows: pack::packed(&formula.result, &rows, &exact, &accepted),
     };
-    Ok((rows.len(), deliver(folder, formula.function, &data)?))
+    Ok((rows.len(), data::deliver(folder, &["rows/", formula.function].concat(), &values)?))
 }
 
 /// Returns the inputs of a function, and the names of the edges that only the last of them reach.
@@ -258,17 +241,6 @@ fn value<'a>(name: &'a str, shape: &Shape, bounds: &[FieldBound]) -> Value<'a> {
         path: leaf.path,
     });
     Value { name, parts: parts.collect() }
-}
-
-/// Writes a script that hands a value to the page; returns its size.
-fn deliver(folder: &Path, name: &str, value: &impl Serialize) -> Result<usize, RowsError> {
-    let path = folder.join(format!("{name}.js"));
-    let json = serde_json::to_string(value).map_err(io::Error::from);
-    let written = json.and_then(|json| {
-        let text = format!("gallery.deliver(\"rows/{name}\", {json});\n");
-        fs::write(&path, &text).map(|()| text.len())
-    });
-    written.map_err(|source| RowsError::Write { path, source })
 }
 
 #[cfg(test)]

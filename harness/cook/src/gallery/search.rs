@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Something to find.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Entry {
-    /// What it is: `page`, `function`, `heading` or `picture`.
+    /// What it is: `page`, `function`, `rung`, `heading` or `picture`.
     pub kind: &'static str,
     /// Its name.
     pub name: String,

@@ -8,6 +8,7 @@ use lapidary_plan::Rung;
 use lapidary_render::Settings;
 use lapidary_scene::Scene;
 use lapidary_translate::fitted::with_constants;
+use lapidary_wgsl::Recipe;
 use serde::Serialize;
 
 /// A shader to take.
@@ -36,6 +37,35 @@ pub struct TakeError {
     what: String,
 }
 
+/// A recipe fitted to a frame's values.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The text to paste.
+    pub text: String,
+    /// The `cook copy` command that writes it, to stdout.
+    pub command: String,
+}
+
+/// Returns a recipe as a frame draws with it: effects that are off are cut out, and overrides that don't have their
+/// default are constants.
+///
+/// # Errors
+/// Returns an error, in words, if the recipe is not well formed.
+pub fn fitted(recipe: &Recipe, overrides: &[(String, f64)]) -> Result<Fitted, String> {
+    let is_on = |effect: &String| value_of(overrides, &marks::override_of(effect)).is_some_and(|value| value != 0.0);
+    let effects: Vec<String> = marks::effects(&recipe.compose()).into_iter().filter(is_on).collect();
+    let wanted: Vec<&str> = effects.iter().map(String::as_str).collect();
+    let cut = marks::with_effects(recipe, Some(&wanted), &[]).map_err(|fault| fault.message)?;
+    let set = set(&cut, overrides);
+    let values: Vec<(&str, &str)> = set.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+    let text = with_constants(&cut, &values, &[]).map_err(|error| error.to_string())?;
+    // Without a name all effects are cut; without the option all would be kept.
+    let effects = if effects.is_empty() { "\"\"".to_owned() } else { effects.join(",") };
+    let given: Vec<String> = set.iter().map(|(name, value)| [name, "=", value].concat()).collect();
+    let given = if given.is_empty() { String::new() } else { [" --set ", &given.join(",")].concat() };
+    Ok(Fitted { text, command: ["./cook copy ", recipe.name, " --effects ", &effects, &given].concat() })
+}
+
 /// Returns the shader of a choice, as the frame of its ladder's scene has it.
 ///
 /// # Errors
@@ -49,36 +79,11 @@ pub fn take(choice: &Choice) -> Result<Take, TakeError> {
     let settings = Settings { rung, ..Settings::of_size(64, 64) };
     let frame = lapidary_render::frame(None, &scene, &settings).map_err(|error| fault(error.to_string()))?;
     let drawn = frame.pipelines.iter().find(|pipeline| pipeline.shader.recipe() == recipe.name);
-    let overrides = drawn.ok_or_else(|| fault("its frame does not run it".to_owned()))?.shader.overrides();
-    let source = recipe.compose();
-    let known = marks::effects(&source);
-    let effects: Vec<&str> = known
-        .iter()
-        .map(String::as_str)
-        .filter(|effect| value_of(overrides, &marks::override_of(effect)).is_some_and(|value| value != 0.0))
-        .collect();
-    let cut = marks::with_effects(recipe, Some(&effects), &[]).map_err(|error| fault(error.message))?;
-    let set = set(&cut, overrides);
-    let values: Vec<(&str, &str)> = set.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
-    let text = with_constants(&cut, &values, &[]).map_err(|error| fault(error.to_string()))?;
-    let given: Vec<String> = set.iter().map(|(name, value)| [name, "=", value].concat()).collect();
-    let option = |name: &str, values: &[String]| match values {
-        [] => String::new(),
-        values => [" --", name, " ", &values.join(",")].concat(),
-    };
-    let effects: Vec<String> = effects.into_iter().map(str::to_owned).collect();
+    let drawn = drawn.ok_or_else(|| fault("its frame does not run it".to_owned()))?;
+    let Fitted { text, command } = fitted(recipe, drawn.shader.overrides()).map_err(fault)?;
     Ok(Take {
         recipe: recipe.name,
-        command: [
-            "./cook copy ",
-            recipe.name,
-            &option("effects", &effects),
-            &option("set", &given),
-            " --out ",
-            recipe.name,
-            ".wgsl",
-        ]
-        .concat(),
+        command: [&command, " --out ", recipe.name, ".wgsl"].concat(),
         source: ["source/rung_", choice.ladder, "_", choice.quality].concat(),
         lines: text.lines().count(),
         text,
@@ -127,6 +132,14 @@ mod tests {
         assert!(good.command.contains("dispersion") && good.command.contains("BOUNCES=8"), "{}", good.command);
         let fast = take("fast");
         assert!(!fast.text.contains("dispersion_tracker") && fast.command.contains("BOUNCES=4"), "{}", fast.command);
+    }
+
+    #[test]
+    fn a_recipe_without_effects_says_so() {
+        let recipe = lapidary_wgsl::recipe("gem_walk").expect("there");
+        let overrides = [("BOUNCES".to_owned(), 8.0), ("EFFECT_DISPERSION".to_owned(), 0.0)];
+        let fitted = fitted(recipe, &overrides).expect("fitted");
+        assert_eq!(fitted.command, "./cook copy gem_walk --effects \"\" --set BOUNCES=8");
     }
 
     #[test]

@@ -23,6 +23,10 @@ pub struct Technique {
     pub modules: &'static [&'static str],
     /// Recipes that draw it, the one to take first.
     pub recipes: &'static [&'static str],
+    /// The function that says most of how it works.
+    pub function: &'static str,
+    /// Whether other recipes run before the one that draws.
+    pub solves: bool,
     /// The scene of its live page.
     pub live: &'static str,
 }
@@ -55,6 +59,8 @@ pub const TECHNIQUES: [Technique; 4] = [
             "bounds_trace",
         ],
         recipes: &["gem_walk", "gem_convex", "gem_bvh", "gem", "gem_composite", "gem_resolve"],
+        function: "refraction_refract",
+        solves: false,
         live: "brilliant",
     },
     Technique {
@@ -69,6 +75,8 @@ pub const TECHNIQUES: [Technique; 4] = [
         guides: &["cdrf_ladder"],
         modules: &["cdrf", "curvature", "half_space", "microfacet", "texture_diffusion", "random_walk"],
         recipes: &["cdrf_shading", "cdrf_table", "texture_irradiance", "blur_texture"],
+        function: "cdrf_cheap",
+        solves: false,
         live: "skin_ring",
     },
     Technique {
@@ -91,6 +99,8 @@ pub const TECHNIQUES: [Technique; 4] = [
             "optical_path_sweep",
             "optical_path_tiles",
         ],
+        function: "optical_path_godunov",
+        solves: true,
         live: "bunny",
     },
     Technique {
@@ -112,6 +122,8 @@ pub const TECHNIQUES: [Technique; 4] = [
             "voxelize",
             "draw_light_map",
         ],
+        function: "diffusion_local",
+        solves: true,
         live: "dragon",
     },
 ];
@@ -128,6 +140,9 @@ mod tests {
             assert!(technique.modules.iter().all(|name| cookbook::module(name).is_some()), "{}", technique.name);
             assert!(technique.recipes.iter().all(|name| lapidary_wgsl::recipe(name).is_some()), "{}", technique.name);
             assert!(Committed::all().any(|picture| picture.name() == technique.hero), "{}", technique.hero);
+            let function =
+                |name: &&str| cookbook::module(name).is_some_and(|of| of.function(technique.function).is_some());
+            assert!(technique.modules.iter().any(|name| function(name)), "{}", technique.function);
         }
     }
 

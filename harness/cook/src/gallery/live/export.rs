@@ -265,7 +265,7 @@ fn store_frame(store: &mut Store, made: Made, moved: &BTreeSet<&str>) -> Result<
             usage.push("COPY_DST".into());
         }
     }
-    store.put(serde_json::to_string(&document)?.as_bytes())
+    Ok(store.put(serde_json::to_string(&document)?.as_bytes())?)
 }
 
 /// Finds what each slider moves in a rung's frame.

@@ -1,55 +1,43 @@
 //! Files of the live pages' data: each content once, by its hash.
 
-use super::LiveError;
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-use flate2::{Compression, write::GzEncoder};
+use super::super::data::{self, DataError};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The folder `data/live` of a site.
 #[derive(Debug)]
 pub struct Store {
-    folder: PathBuf,
-    /// The size of each file that was written, by its name.
-    files: BTreeMap<String, u64>,
+    site: PathBuf,
+    /// The bytes of each file that was written, by its name.
+    files: BTreeMap<String, usize>,
 }
 
 impl Store {
-    /// Makes the folder in a site's folder.
-    pub fn new(site: &Path) -> Result<Self, LiveError> {
-        let folder = site.join("data/live");
-        std::fs::create_dir_all(&folder).map_err(|error| LiveError::File { path: folder.clone(), error })?;
-        Ok(Self { folder, files: BTreeMap::new() })
+    /// The store of a site's folder.
+    pub fn new(site: &Path) -> Self {
+        Self { site: site.to_owned(), files: BTreeMap::new() }
     }
 
-    /// Stores bytes, squeezed, under their hash, unless they are there already; returns the hash.
-    pub fn put(&mut self, bytes: &[u8]) -> Result<String, LiveError> {
+    /// Stores bytes under their hash, unless they are there already; returns the hash.
+    pub fn put(&mut self, bytes: &[u8]) -> Result<String, DataError> {
         let name = format!("{:016x}", hash(bytes));
         if !self.files.contains_key(&name) {
-            let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-            let squeezed = encoder.write_all(bytes).and_then(|()| encoder.finish());
-            let squeezed = squeezed.map_err(|error| LiveError::File { path: self.folder.join(&name), error })?;
-            self.deliver(&name, &STANDARD.encode(squeezed))?;
+            self.deliver(&name, &data::packed(bytes))?;
         }
         Ok(name)
     }
 
-    /// Writes a script that hands a value to the page.
-    pub fn deliver(&mut self, name: &str, value: &impl Serialize) -> Result<(), LiveError> {
-        let path = self.folder.join(format!("{name}.js"));
-        let name_of = serde_json::to_string(&format!("live/{name}"))?;
-        let text = ["gallery.deliver(", &name_of, ", ", &serde_json::to_string(value)?, ");\n"].concat();
-        std::fs::write(&path, &text).map_err(|error| LiveError::File { path, error })?;
-        self.files.insert(name.to_owned(), text.len() as u64);
+    /// Writes a value for the page that asks for `live/NAME`.
+    pub fn deliver(&mut self, name: &str, value: &impl Serialize) -> Result<(), DataError> {
+        let bytes = data::deliver(&self.site, &["live/", name].concat(), value)?;
+        self.files.insert(name.to_owned(), bytes);
         Ok(())
     }
 
     /// The bytes of all files.
-    #[must_use]
-    pub fn bytes(&self) -> u64 {
+    #[cfg(test)]
+    pub fn bytes(&self) -> usize {
         self.files.values().sum()
     }
 }

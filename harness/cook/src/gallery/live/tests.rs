@@ -12,9 +12,9 @@ fn scene(name: &str) -> &'static LiveScene {
 }
 
 /// All scenes, exported once: the site's folder, what the pages need to know, and the bytes of it all.
-static EXPORTED: LazyLock<(tempfile::TempDir, BTreeMap<&str, Manifest>, u64)> = LazyLock::new(|| {
+static EXPORTED: LazyLock<(tempfile::TempDir, BTreeMap<&str, Manifest>, usize)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut store = Store::new(folder.path()).expect("a store");
+    let mut store = Store::new(folder.path());
     let manifest = |live: &LiveScene| (live.scene, write_scene(live, &mut store).expect("exported"));
     let manifests = SCENES.iter().map(manifest).collect();
     let bytes = store.bytes();
@@ -39,7 +39,8 @@ fn copies(command: &str) {
     let recipe = lapidary_wgsl::RECIPES.iter().find(|recipe| recipe.name == *name).expect("a recipe");
     let effects: Vec<&str> = effects.trim_matches('"').split(',').filter(|effect| !effect.is_empty()).collect();
     let text = crate::cookbook::marks::with_effects(recipe, Some(&effects), &[]).expect("a text");
-    let pairs = set.iter().filter(|word| **word != "--set").map(|word| word.split_once('=').expect("a pair"));
+    let pairs = set.iter().filter(|word| **word != "--set").flat_map(|word| word.split(','));
+    let pairs = pairs.map(|word| word.split_once('=').expect("a pair"));
     let text = lapidary_translate::fitted::with_constants(&text, &pairs.collect::<Vec<_>>(), &[]);
     let text = text.unwrap_or_else(|error| panic!("{command}: {error}"));
     naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{command}: {error}"));

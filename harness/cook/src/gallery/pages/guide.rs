@@ -25,11 +25,12 @@ struct Values<'a> {
     /// Shaders of the rungs, on the page that says which to choose.
     takes: &'a [super::super::take::Take],
     live: Vec<&'a super::super::LivePage>,
+    note: &'a str,
 }
 
 /// Returns the page of a guide.
 pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
-    let doc = markdown::page(&parts.doc(of.file), &parts.places.of(of.file));
+    let doc = markdown::page(parts.doc(of.file), &parts.places.of(of.file));
     let values = Values {
         title: &doc.title,
         lead: doc.lead,
@@ -40,6 +41,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
         ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
         takes: if of.name == CHOOSING { &parts.takes } else { &[] },
         live: parts.live.iter().collect(),
+        note: super::super::choices::NOTE,
     };
     let body = templates::render("guide.html", values);
     let path = ["guides/", of.name, ".html"].concat();

@@ -11,6 +11,7 @@ struct Card<'a> {
     name: &'a str,
     title: &'a str,
     summary: &'a str,
+    choice: Option<&'a super::super::choices::Choice>,
     live: Option<&'a str>,
     picture: Option<&'a Shown>,
 }
@@ -22,6 +23,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
         name: of.name,
         title: of.title,
         summary: of.summary,
+        choice: default(parts, of),
         live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
         picture: picture(of.hero),
     };
@@ -32,7 +34,6 @@ pub fn page(parts: &Parts<'_>) -> Page {
         modules: usize,
         functions: usize,
         recipes: usize,
-        takes: &'a [super::super::take::Take],
     }
     let values = Values {
         hero: picture("vitrine"),
@@ -40,7 +41,6 @@ pub fn page(parts: &Parts<'_>) -> Page {
         modules: cookbook::modules().len(),
         functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),
         recipes: lapidary_wgsl::RECIPES.len(),
-        takes: &parts.takes,
     };
     let body = templates::render("start.html", values);
     let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";
@@ -48,4 +48,16 @@ pub fn page(parts: &Parts<'_>) -> Page {
         Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
     page.entries = vec![super::Entry::page("Start", &page.path, &text::plain(description))];
     page
+}
+
+/// Returns the rung that a technique has without a choice, on its first ladder.
+fn default<'a>(
+    parts: &'a Parts<'_>,
+    of: &crate::gallery::techniques::Technique,
+) -> Option<&'a super::super::choices::Choice> {
+    let of_ladder = |take: &&super::super::take::Take| {
+        of.ladders.first() == Some(&take.choice.ladder)
+            && take.choice.quality == lapidary_plan::Quality::default().name()
+    };
+    parts.takes.iter().find(of_ladder).map(|take| &take.choice)
 }

@@ -4,6 +4,7 @@ use super::super::{
     Parts,
     ladder::Kind,
     markdown,
+    mirror::{self, Coloured},
     pictures::Shown,
     techniques::Technique,
     templates::{self, Markup},
@@ -25,10 +26,18 @@ struct Values<'a> {
     title: &'a str,
     summary: &'a str,
     hero: Option<&'a Shown>,
+    scene: &'a str,
     live: Option<&'a str>,
     lead: Markup,
     equation: Markup,
     introduction: Markup,
+    /// Its function in both languages, and the module that has it.
+    pair: Option<Coloured<'a>>,
+    of_module: &'a str,
+    /// Modules whose page tells of hard cases.
+    hard: Vec<&'a str>,
+    solves: bool,
+    note: &'a str,
     /// The page that says everything about it.
     whole: String,
     takes: Vec<&'a super::super::take::Take>,
@@ -56,7 +65,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     // The doc page is a module's own, or a guide.
     let kind = if cookbook::module(of.doc).is_some() { "modules" } else { "guides" };
     let whole = ["../", kind, "/", of.doc, ".html"].concat();
-    let doc = markdown::page(&parts.doc(&file), &parts.places.of_part(&file, &whole));
+    let doc = markdown::page(parts.doc(&file), &parts.places.of_part(&file, &whole));
     let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
     let hero = parts.pictures.iter().find(|picture| picture.name == of.hero);
     let guide = |name: &str| {
@@ -64,15 +73,26 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         Some(Guide { path: ["../guides/", guide.name, ".html"].concat(), title: guide.title })
     };
     let shown = |picture: &&Shown| picture.folder == of.pictures && picture.name != of.hero;
+    let pair = of.modules.iter().find_map(|name| {
+        let module = cookbook::module(name)?;
+        let pairs = mirror::pairs(module, parts.mirrors.get(name).map_or(&[], Vec::as_slice));
+        Some((module, pairs.into_iter().find(|pair| pair.name == of.function)?))
+    });
     let values = Values {
         technique: of.name,
         title: of.title,
         summary: of.summary,
         hero,
+        scene: of.live,
         live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
         lead: doc.lead,
         equation: doc.equation,
         introduction: doc.introduction,
+        pair: pair.as_ref().map(|(_, pair)| pair.coloured()),
+        of_module: pair.as_ref().map_or("", |(module, _)| module.name),
+        hard: of.modules.iter().copied().filter(|name| has_hard_cases(name)).collect(),
+        solves: of.solves,
+        note: super::super::choices::NOTE,
         whole,
         takes: parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder)).collect(),
         diagrams: diagrams(parts, of),
@@ -103,6 +123,11 @@ pub fn purpose(name: &str) -> String {
         Some(cookbook::header::parse_header(recipe.source).ok()?.purpose)
     };
     cookbook::module(name).map(|module| module.header.purpose.clone()).or_else(recipe).unwrap_or_default()
+}
+
+/// Whether a module's doc page has a heading of that name.
+fn has_hard_cases(name: &str) -> bool {
+    cookbook::module(name).is_some_and(|module| module.page.contains("\n## Hard cases\n"))
 }
 
 /// Returns the diagrams of the modules that are most its own.

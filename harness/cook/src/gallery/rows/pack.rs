@@ -11,12 +11,10 @@
 //!
 //! Floats are counted in their order, in which both zeros are one.
 
-use base64::Engine as _;
-use flate2::{Compression, write::GzEncoder};
+use super::super::data;
 use lapidary_assay::formula::Words;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::{Accepted, ulp_of, word};
-use std::io::Write as _;
 
 /// Returns rows, their exact results and what they accept as gzip in base64.
 pub fn packed(result: &Shape, rows: &[Words], exact: &[Vec<f64>], accepted: &[Vec<Accepted>]) -> String {
@@ -45,7 +43,7 @@ pub fn packed(result: &Shape, rows: &[Words], exact: &[Vec<f64>], accepted: &[Ve
             column(&mut bytes, cases().map(|(_, case)| word(scalar, case.low[index])));
         }
     }
-    base64::engine::general_purpose::STANDARD.encode(squeezed(&bytes))
+    data::packed(&bytes)
 }
 
 /// Returns what rounding to f32 takes from a number, in 1/256 ulp.
@@ -65,15 +63,10 @@ fn column(bytes: &mut Vec<u8>, words: impl Iterator<Item = u32> + Clone) {
     }
 }
 
-fn squeezed(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
-    written.unwrap_or_else(|error| unreachable!("a vector takes all bytes: {error}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base64::Engine as _;
     use flate2::read::GzDecoder;
     use std::io::Read as _;
 
