@@ -11,8 +11,11 @@ pub(crate) mod site;
 
 use browser::opened;
 use html::Piece;
+use lapidary_browser::Page;
 use lapidary_cook::cookbook;
-use site::{Site, SitePage, files, resolved, site};
+use lapidary_cook::gallery::ladder::KINDS;
+use lapidary_plan::Quality;
+use site::{Site, SitePage, decoded, files, resolved, site};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most bytes of a page without its pictures: HTML, styles, scripts and fonts.
@@ -26,6 +29,9 @@ const ONE_IN: u64 = 12;
 
 /// Attributes with an address.
 const ADDRESSES: [&str; 4] = ["href", "src", "data-src", "poster"];
+
+/// How the names of the shaders of rungs begin.
+const OF_RUNG: &str = "source/rung_";
 
 /// An address in a page or a style.
 struct Link<'a> {
@@ -50,16 +56,38 @@ fn links<'a>(site: &'a Site) -> Vec<Link<'a>> {
     links
 }
 
+/// The addresses that the search offers, as links of the start page.
+fn found_links(site: &Site) -> Vec<Link<'static>> {
+    let entries = delivered(site, "search");
+    let entries = entries.as_array().expect("a list").iter();
+    let address = |entry: &serde_json::Value| entry["path"].as_str().expect("a path").to_owned();
+    entries.map(|entry| Link { from: "index.html", address: address(entry), followed: true }).collect()
+}
+
 /// The addresses in a stylesheet.
 fn in_style(text: &str) -> Vec<String> {
     let parts = text.split("url(").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0));
     parts.map(|address| address.trim().trim_matches(['"', '\'']).to_owned()).collect()
 }
 
-/// Whether a page has what the part after `#` names. A part with `=` is a state, which a script reads.
+/// Whether a page has what the part after `#` names: an id, or a state that one of its scripts reads.
 fn has_anchor(page: &SitePage, address: &str) -> bool {
     let Some((_, anchor)) = address.split_once('#') else { return true };
-    anchor.is_empty() || anchor == "top" || anchor.contains('=') || page.ids.contains(anchor)
+    match anchor.split_once('=') {
+        Some(("picture", name)) => page.pictures.contains(&decoded(name)),
+        Some(("compare", value)) => {
+            let parts: Vec<String> = value.split(',').map(decoded).collect();
+            let [ladder, left, right] = parts.as_slice() else { return false };
+            page.ladders.get(ladder).is_some_and(|rungs| rungs.contains(left) && rungs.contains(right))
+        }
+        // A live page's own: its controls by their names, and the eye.
+        Some(_) => {
+            let known =
+                |part: &str| part.split_once('=').is_some_and(|(key, _)| key == "view" || page.controls.contains(key));
+            page.is_live && anchor.split('&').all(known)
+        }
+        None => anchor.is_empty() || anchor == "top" || page.ids.contains(&decoded(anchor)),
+    }
 }
 
 #[test]
@@ -67,8 +95,11 @@ fn every_link_leads_somewhere() {
     let site = site();
     let all: BTreeSet<String> = files(&site.folder).into_iter().collect();
     let mut wrong = Vec::new();
-    let links = links(site);
+    let mut links = links(site);
     assert!(links.len() > 1000, "{}", links.len());
+    let found = found_links(site);
+    assert!(found.len() > 100, "{}", found.len());
+    links.extend(found);
     for Link { from, address, followed } in &links {
         let fine = match resolved(from, address) {
             Some(path) => all.contains(&path) && site.pages.get(&path).is_none_or(|page| has_anchor(page, address)),
@@ -88,16 +119,39 @@ fn every_link_leads_somewhere() {
         };
         wrong.extend(in_style(&text).into_iter().filter(lost).map(|address| format!("{style}: {address}")));
     }
+    wrong.sort();
     wrong.dedup();
     assert!(wrong.is_empty(), "{} links lead nowhere:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 #[test]
-fn an_anchor_is_an_id() {
-    let page = SitePage { bytes: 0, pieces: Vec::new(), ids: BTreeSet::from(["here".to_owned()]) };
-    let cases = [("a.html", true), ("a.html#here", true), ("#there", false), ("#ior=2.4", true)];
+fn an_anchor_is_an_id_or_a_state() {
+    let page = SitePage::of(
+        "<h2 id=\"here\"></h2><a class=\"big picture\" href=\"../images/gem/a+b.jpg\"></a><a href=\"c.jpg\"></a>
+        <figure class=\"compare\" data-ladder=\"convex\"><select data-side=\"left\"><option value=\"walk-8+tracker\">
+        <option value=\"surface\"></select></figure><select><option value=\"other\"></select>",
+    );
+    let cases = [
+        ("a.html", true),
+        ("a.html#here", true),
+        ("#there", false),
+        ("#picture=a%2Bb", true),
+        ("#picture=c", false),
+        ("#picture=", false),
+        ("#compare=convex,walk-8%2Btracker,surface", true),
+        ("#compare=convex,surface,other", false),
+        ("#compare=convex,surface", false),
+        ("#compare=concave,surface,surface", false),
+        ("#ior=2.4", false),
+    ];
     for (address, expected) in cases {
         assert_eq!(has_anchor(&page, address), expected, "{address}");
+    }
+    let live = SitePage::of("<section class=\"live\"><input name=\"index\"></section>");
+    let cases =
+        [("#index=2.4", true), ("#index=2.4&view=1,2,3", true), ("#ior=2.4", false), ("#index=2.4&ior=1", false)];
+    for (address, expected) in cases {
+        assert_eq!(has_anchor(&live, address), expected, "{address}");
     }
     assert_eq!(in_style("@font-face { src: url(\"a.woff2\") } b { mask: url( c.svg ) }"), ["a.woff2", "c.svg"]);
 }
@@ -211,10 +265,7 @@ struct Listing {
 
 /// Returns the listings of a page.
 fn listings(site: &Site, page: &SitePage) -> Vec<Listing> {
-    let class = |attributes: &BTreeMap<String, String>, wanted: &str| {
-        attributes.get("class").is_some_and(|names| names.split_whitespace().any(|name| name == wanted))
-    };
-    let is_source = |piece: &Piece| matches!(piece, Piece::Start(_, attributes) if class(attributes, "source"));
+    let is_source = |piece: &Piece| piece.has_class("source");
     let starts: Vec<usize> = (0..page.pieces.len()).filter(|at| is_source(&page.pieces[*at])).collect();
     let mut found = Vec::new();
     for (nth, start) in starts.iter().enumerate() {
@@ -222,21 +273,29 @@ fn listings(site: &Site, page: &SitePage) -> Vec<Listing> {
         // Listings do not stand in one another.
         let within = &page.pieces[*start..starts.get(nth + 1).copied().unwrap_or(page.pieces.len())];
         let at = |wanted: &str| {
-            within
-                .iter()
-                .position(|piece| matches!(piece, Piece::Start(name, of) if name == wanted || class(of, wanted)))
+            let is_it =
+                |piece: &Piece| piece.has_class(wanted) || matches!(piece, Piece::Start(name, _) if name == wanted);
+            within.iter().position(is_it)
         };
         let file = at("file").map(|at| text_until(&within[at..], "span")).unwrap_or_default();
-        if !class(attributes, "copyable") || !file.ends_with(".wgsl") {
+        if !page.pieces[*start].has_class("copyable") || !file.ends_with(".wgsl") {
             continue;
         }
         let text = match attributes.get("data-source") {
-            Some(name) => delivered(site, name),
+            Some(name) => source(site, name),
             None => text_until(&within[at("pre").unwrap_or_else(|| panic!("{file}: no text"))..], "pre"),
         };
         found.push(Listing { file, text });
     }
     found
+}
+
+/// The names of what a page's buttons load to copy it, wherever they stand.
+fn sources(page: &SitePage) -> impl Iterator<Item = &str> {
+    page.pieces.iter().filter_map(|piece| match piece {
+        Piece::Start(_, attributes) => attributes.get("data-source").map(String::as_str),
+        _ => None,
+    })
 }
 
 /// The text up to the end of an element.
@@ -245,8 +304,8 @@ fn text_until(pieces: &[Piece], end: &str) -> String {
     within.filter_map(|piece| if let Piece::Text(text) = piece { Some(text.as_str()) } else { None }).collect()
 }
 
-/// The text that a script of data delivers.
-fn delivered(site: &Site, name: &str) -> String {
+/// The value that a script of data delivers.
+fn delivered(site: &Site, name: &str) -> serde_json::Value {
     let path = site.folder.join(format!("data/{name}.js"));
     let script = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let value =
@@ -255,7 +314,12 @@ fn delivered(site: &Site, name: &str) -> String {
         .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What a copy button puts into the clipboard is complete WGSL; a test below holds the clipboard to the page.
+/// The text that a button loads.
+fn source(site: &Site, name: &str) -> String {
+    delivered(site, name).as_str().unwrap_or_else(|| panic!("{name}: no text")).to_owned()
+}
+
+/// What a copy button puts into the clipboard is complete WGSL; tests below hold the clipboard to the page.
 #[test]
 fn copied_listings_compile() {
     let (site, mut count) = (site(), 0);
@@ -275,6 +339,24 @@ fn copied_listings_compile() {
     assert!(count >= least, "{count} listings, of {least} modules and recipes");
 }
 
+/// The same for every text that is loaded, in listings or tables; each once.
+#[test]
+fn loaded_sources_compile() {
+    let site = site();
+    let names: BTreeSet<&str> = site.pages.values().flat_map(sources).collect();
+    for name in &names {
+        let text = source(site, name);
+        if let Err(error) = lapidary_specialise::parse(&text, name) {
+            panic!("{name}: {error}");
+        }
+        assert!(text.contains("fn "), "{name}: {text}");
+    }
+    let rungs = names.iter().filter(|name| name.starts_with(OF_RUNG)).count();
+    assert_eq!(rungs, KINDS.len() * Quality::ALL.len(), "a shader for each quality of each ladder: {names:?}");
+    let least = cookbook::modules().len() + lapidary_wgsl::RECIPES.len() + rungs;
+    assert!(names.len() >= least, "{} sources, of {least} modules, recipes and rungs", names.len());
+}
+
 /// A handful of pages: one of each folder, and some more by the suite's seed.
 fn some_pages() -> Vec<&'static str> {
     let site = site();
@@ -286,37 +368,46 @@ fn some_pages() -> Vec<&'static str> {
     chosen.into_iter().collect()
 }
 
-/// From a file: no error is told, nothing is fetched from outside the folder, and on a phone nothing is
-/// wider than the page.
+/// A phone's window and a desktop's: width, height, whether it is a phone.
+const WINDOWS: [(u32, u32, bool); 2] = [(390, 844, true), (1440, 900, false)];
+
+/// From a file, in light and dark, on a phone and a desktop: no error is told, nothing is fetched from outside
+/// the folder, and nothing is wider than the window.
 #[test]
-fn pages_are_quiet_and_fit_a_phone() {
+fn pages_are_quiet_and_fit_their_window() {
     let Some(mut page) = browser::started() else { return };
-    let site = site();
-    let home = site.address("");
     let mut wrong = Vec::new();
     for path in some_pages() {
-        page.set_viewport(390, 844, true).expect("set");
-        page.set_media(path.len() % 2 == 0, true).expect("set");
-        page.open(&site.address(path)).expect(path);
-        // Down to its end, so that lazy pictures come too.
-        page.run(browser::SCROLL).expect(path);
-        let wide = page.evaluate(browser::WIDER).expect(path);
-        if wide != serde_json::json!([]) {
-            wrong.push(format!("{path}: wider than 390 pixels: {wide}"));
+        for (width, height, is_phone) in WINDOWS {
+            page.set_viewport(width, height, is_phone).expect("set");
+            for dark in [false, true] {
+                page.set_media(dark, true).expect("set");
+                let place = format!("{path} ({width} px, {})", if dark { "dark" } else { "light" });
+                wrong.extend(faults(&mut page, path).into_iter().map(|fault| format!("{place}: {fault}")));
+            }
         }
-        let broken = page.evaluate(browser::BROKEN).expect(path);
-        if broken != serde_json::json!([]) {
-            wrong.push(format!("{path}: pictures that are none: {broken}"));
-        }
-        wrong.extend(page.problems().expect(path).iter().map(|problem| format!("{path}: {problem}")));
-        let outside = |address: &&String| {
-            !(address.starts_with(&home) || address.starts_with("data:") || address.starts_with("blob:"))
-        };
-        wrong.extend(
-            page.requests().expect(path).iter().filter(outside).map(|address| format!("{path} asks for {address}")),
-        );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Opens a page of the site, and returns what is wrong with it.
+fn faults(page: &mut Page, path: &str) -> Vec<String> {
+    let home = site().address("");
+    page.open(&site().address(path)).expect(path);
+    // Down to its end, so that lazy pictures come too.
+    page.run(browser::SCROLL).expect(path);
+    let mut wrong = Vec::new();
+    for (what, script) in [("wider than the window", browser::WIDER), ("pictures that are none", browser::BROKEN)] {
+        let found = page.evaluate(script).expect(path);
+        if found != serde_json::json!([]) {
+            wrong.push(format!("{what}: {found}"));
+        }
+    }
+    wrong.extend(page.problems().expect(path).iter().cloned());
+    let inside = |address: &str| ["data:", "blob:", home.as_str()].iter().any(|start| address.starts_with(*start));
+    let outside = page.requests().expect(path).iter().filter(|address| !inside(address));
+    wrong.extend(outside.map(|address| format!("it asks for {address}")));
+    wrong
 }
 
 /// The button's text is what the page shows, to the letter.
@@ -357,4 +448,23 @@ fn a_copy_button_copies_what_is_shown() {
         )
         .expect("copied");
     assert_eq!(commands, serde_json::json!([]));
+}
+
+/// A cell of the table of rungs shows no text: its button copies the shader that it names, whole.
+#[test]
+fn a_button_of_a_rung_copies_its_shader() {
+    let of_rung = |page: &'static SitePage| sources(page).find(|name| name.starts_with(OF_RUNG));
+    let found = site().pages.iter().find_map(|(path, page)| Some((path, of_rung(page)?)));
+    let (path, name) = found.expect("a rung's shader");
+    let Some(mut page) = opened(path) else { return };
+    page.grant_clipboard().expect("granted");
+    let mark = format!(
+        "await navigator.clipboard.writeText('');
+        document.querySelector('td.copyable.cell[data-source=\"{name}\"] button.copy').id = 'the-button';"
+    );
+    page.run(&mark).expect("a cell with a button");
+    page.click("#the-button").expect("clicked");
+    let copied = page.wait_for("navigator.clipboard.readText()", browser::SOON).expect("a clipboard");
+    assert_eq!(copied.as_str().expect("a text"), source(site(), name), "{path}: {name}");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }

@@ -1,5 +1,4 @@
 use super::*;
-use lapidary_gpu::{AdapterChoice, Gpu};
 use std::collections::HashSet;
 
 /// Returns a ladder's pictures as they would be drawn, without drawing them.
@@ -17,7 +16,7 @@ fn pretended(kind: &'static Kind) -> Vec<RungPicture> {
 }
 
 fn html(kind: &'static Kind, pictures: &[RungPicture]) -> String {
-    section(kind, pictures, "../").expect("the committed report").0.replace("&#x2f;", "/")
+    section(kind, pictures, "../").expect("the committed report").0
 }
 
 /// Returns the values of an attribute.
@@ -155,41 +154,5 @@ fn figure_of(root: &str, file: &str, title: &str, command: &str) -> String {
         rung: "walk-8",
         samples: "2 × 2 samples a pixel",
     };
-    templates::render("figure_alone.html", Values { p, root }).0.replace("&#x2f;", "/")
-}
-
-#[test]
-#[ignore = "draws all ladders' pictures and writes a page to look at: target/ladders/index.html"]
-fn a_page_to_look_at() {
-    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-    let root = crate::repository::place();
-    let out = root.join("target/ladders");
-    let started = std::time::Instant::now();
-    let assets = out.join("assets");
-    std::fs::create_dir_all(&assets).expect("a folder");
-    for file in std::fs::read_dir(root.join("harness/cook/src/gallery/assets")).expect("assets").flatten() {
-        if file.path().is_dir() {
-            continue;
-        }
-        std::fs::copy(file.path(), assets.join(file.file_name())).expect("copied");
-    }
-    let drawn: Vec<LadderPictures> = match std::env::var_os("LADDERS_DRAWN") {
-        // The same list without drawing again.
-        Some(_) => KINDS.iter().map(|kind| pictures::listed(&gpu.describe(), kind)).collect(),
-        None => pictures(gpu, &out).expect("drawn"),
-    };
-    println!("{:.1} s", started.elapsed().as_secs_f64());
-    for LadderPictures { pictures, .. } in &drawn {
-        for file in pictures.iter().flat_map(|picture| [Some(&picture.file), picture.exact.as_ref()]).flatten() {
-            assert!(out.join(file).exists(), "{file}");
-        }
-    }
-    let sections: Vec<String> = drawn.iter().map(|of| section(of.kind, &of.pictures, "").expect("shown").0).collect();
-    let shown = |name: &str| {
-        figure_of("", &format!("images/rungs/{name}.jpg"), name, "./cook render brilliant --rung walk-8+tracker")
-    };
-    let figures = ["convex/walk-8-tracker", "translucent/diffusion-64", "cdrf/drift"].map(shown);
-    let page =
-        include_str!("look.html").replace("SECTIONS", &sections.join("\n")).replace("FIGURES", &figures.join("\n"));
-    std::fs::write(out.join("index.html"), page).expect("written");
+    templates::render("figure_alone.html", Values { p, root }).0
 }

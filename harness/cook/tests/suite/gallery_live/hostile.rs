@@ -5,7 +5,8 @@ use super::{DRAWN, begin, differing, running, shown};
 use crate::gallery_pages::browser::{SOON, started};
 use image::codecs::hdr::HdrEncoder;
 use lapidary_browser::Page;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// What the page says, its picture's visibility and the canvas's.
 const SAID: &str = "(() => {
@@ -29,16 +30,13 @@ fn has_failed(page: &mut Page, words: &str) {
 
 #[test]
 fn without_a_device_the_picture_stands_there() {
+    // Less than the picture's side.
+    let small = limited(|name, default| if name == "maxTextureDimension2D" { 256 } else { default });
     let cases = [
         ("Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });", "no WebGPU"),
         ("GPU.prototype.requestAdapter = async () => null;", "no graphics device"),
         ("GPUAdapter.prototype.requestDevice = async () => { throw new Error('It is asleep'); };", "It is asleep"),
-        // A quarter of what the picture takes.
-        (
-            "const limits = { maxTextureDimension2D: 256, maxBufferSize: 2 ** 28, maxStorageBufferBindingSize: 2 ** 27, maxStorageBuffersPerShaderStage: 8 };
-            Object.defineProperty(GPUAdapter.prototype, 'limits', { value: limits });",
-            "too small: its maxTextureDimension2D is 256",
-        ),
+        (small.as_str(), "needs maxTextureDimension2D of "),
     ];
     for (script, words) in cases {
         let Some(mut page) = started() else { return };
@@ -48,25 +46,157 @@ fn without_a_device_the_picture_stands_there() {
     }
 }
 
-/// Half of what WebGPU's least device has suffices.
+/// WebGPU's default limits, which every device has at least, by its specification's table; without the two
+/// alignments, whose larger value is the worse.
+const DEFAULTS: [(&str, u64); 29] = [
+    ("maxTextureDimension1D", 8192),
+    ("maxTextureDimension2D", 8192),
+    ("maxTextureDimension3D", 2048),
+    ("maxTextureArrayLayers", 256),
+    ("maxBindGroups", 4),
+    ("maxBindGroupsPlusVertexBuffers", 24),
+    ("maxBindingsPerBindGroup", 1000),
+    ("maxDynamicUniformBuffersPerPipelineLayout", 8),
+    ("maxDynamicStorageBuffersPerPipelineLayout", 4),
+    ("maxSampledTexturesPerShaderStage", 16),
+    ("maxSamplersPerShaderStage", 16),
+    ("maxStorageBuffersPerShaderStage", 8),
+    ("maxStorageTexturesPerShaderStage", 4),
+    ("maxUniformBuffersPerShaderStage", 12),
+    ("maxUniformBufferBindingSize", 1 << 16),
+    ("maxStorageBufferBindingSize", 1 << 27),
+    ("maxVertexBuffers", 8),
+    ("maxBufferSize", 1 << 28),
+    ("maxVertexAttributes", 16),
+    ("maxVertexBufferArrayStride", 2048),
+    ("maxInterStageShaderVariables", 16),
+    ("maxColorAttachments", 8),
+    ("maxColorAttachmentBytesPerSample", 32),
+    ("maxComputeWorkgroupStorageSize", 1 << 14),
+    ("maxComputeInvocationsPerWorkgroup", 256),
+    ("maxComputeWorkgroupSizeX", 256),
+    ("maxComputeWorkgroupSizeY", 256),
+    ("maxComputeWorkgroupSizeZ", 64),
+    ("maxComputeWorkgroupsPerDimension", 65535),
+];
+
+/// A script for a browser whose adapter and devices have these limits, and that refuses a device of more.
+fn limited(limit: impl Fn(&str, u64) -> u64) -> String {
+    let limits: serde_json::Map<String, Value> =
+        DEFAULTS.iter().map(|(name, default)| ((*name).to_owned(), json!(limit(name, *default)))).collect();
+    format!(
+        "const limits = {{ minUniformBufferOffsetAlignment: 256, minStorageBufferOffsetAlignment: 256, ...{} }};
+        for (const {{ prototype }} of [GPUAdapter, GPUDevice]) Object.defineProperty(prototype, 'limits', {{ value: limits }});
+        const request = GPUAdapter.prototype.requestDevice;
+        GPUAdapter.prototype.requestDevice = async function ({{ requiredLimits = {{}}, ...rest }} = {{}}) {{
+          for (const [name, asked] of Object.entries(requiredLimits)) {{
+            if (!(asked <= limits[name])) throw new DOMException(`${{name}} of ${{asked}}`, 'OperationError');
+          }}
+          return request.call(this, rest);
+        }};",
+        Value::from(limits)
+    )
+}
+
+/// The frame that a live page draws for its state.
+const FRAME: &str = "
+    const { manifest, state } = gallery.live;
+    const rung = manifest.rungs[state.rung];
+    const file = rung.frames[rung.toggles.filter((name) => state.on[name]).join('+')];
+    return JSON.parse(new TextDecoder().decode(await gallery.bytes(`live/${file}`)));";
+
+/// Bytes that a sample of a colour target counts for, by WebGPU's table of formats.
+fn target_bytes(format: &str) -> u64 {
+    match format {
+        "r8unorm" => 1,
+        "r32float" | "rg16float" => 4,
+        "rgba8unorm" | "rgba8unorm-srgb" | "rgba16float" | "rg32float" => 8,
+        "rgba32float" => 16,
+        other => panic!("{other}: a target of another format"),
+    }
+}
+
+/// What a frame needs of some limits, by its rows. Both stages of a pipeline count as one.
+fn needs(frame: &Value) -> BTreeMap<&'static str, u64> {
+    let rows = |of: &Value, key: &str| of[key].as_array().cloned().unwrap_or_default();
+    let resources = rows(frame, "resources");
+    let number = |value: &Value| value.as_u64().unwrap_or_default();
+    let mut needs = BTreeMap::new();
+    let mut need = |name: &'static str, count: u64| {
+        let most = needs.entry(name).or_insert(0);
+        *most = count.max(*most);
+    };
+    for resource in &resources {
+        let uses = rows(resource, "usage");
+        need("maxBufferSize", number(&resource["bytes"]));
+        if uses.contains(&json!("STORAGE")) {
+            need("maxStorageBufferBindingSize", number(&resource["bytes"]));
+        }
+        if uses.contains(&json!("UNIFORM")) {
+            need("maxUniformBufferBindingSize", number(&resource["bytes"]));
+        }
+        for side in rows(resource, "size").iter().take(2) {
+            need("maxTextureDimension2D", number(side));
+        }
+    }
+    let mut buffers: BTreeMap<(u64, &'static str), u64> = BTreeMap::new();
+    for group in &rows(frame, "bind_groups") {
+        need("maxBindGroups", number(&group["group"]) + 1);
+        for entry in &rows(group, "entries") {
+            let resource = &resources[usize::try_from(number(&entry["resource"])).expect("a place")];
+            let uses = rows(resource, "usage");
+            let limit = match resource["kind"].as_str() {
+                Some("sampler") => "maxSamplersPerShaderStage",
+                Some("texture") => "maxSampledTexturesPerShaderStage",
+                _ if uses.contains(&json!("STORAGE")) => "maxStorageBuffersPerShaderStage",
+                _ => "maxUniformBuffersPerShaderStage",
+            };
+            *buffers.entry((number(&group["pipeline"]), limit)).or_default() += 1;
+        }
+    }
+    for pipeline in &rows(frame, "pipelines") {
+        let targets = rows(pipeline, "targets");
+        need("maxColorAttachments", targets.len() as u64);
+        let bytes = targets.iter().map(|format| target_bytes(format.as_str().expect("a format"))).sum();
+        need("maxColorAttachmentBytesPerSample", bytes);
+    }
+    for ((_, limit), count) in buffers {
+        need(limit, count);
+    }
+    needs
+}
+
+/// A live page runs on a device of WebGPU's default limits. Half of them are less than its frame needs: it has
+/// three bind groups, and targets of 24 bytes a sample. Then one sentence says what is missing.
 #[test]
-fn half_the_limits_are_enough() {
-    if !super::runs_whole("half_the_limits_are_enough") {
+fn the_default_limits_are_enough_and_half_of_them_are_not() {
+    if !super::runs_whole("the_default_limits_are_enough_and_half_of_them_are_not") {
         return;
     }
-    let Some(mut page) = started() else { return };
-    let halved = "
-        const all = Object.getOwnPropertyDescriptor(GPUAdapter.prototype, 'limits').get;
-        Object.defineProperty(GPUAdapter.prototype, 'limits', {
-          get() {
-            const whole = all.call(this);
-            return new Proxy({}, { get: (_, name) => Math.floor(whole[name] / 2) });
-          },
-        });";
-    page.before_scripts(halved).expect("kept");
-    begin(&mut page, "brilliant", "");
-    page.wait_for("!document.querySelector('.live canvas').hidden", DRAWN).expect("it runs");
-    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+    for divisor in [1, 2] {
+        let limits: BTreeMap<&str, u64> = DEFAULTS.iter().map(|(name, default)| (*name, default / divisor)).collect();
+        let Some(mut page) = started() else { return };
+        page.before_scripts(&limited(|name, _| limits[name])).expect("kept");
+        begin(&mut page, "brilliant", "");
+        let ended = format!("!document.querySelector('.live canvas').hidden || Boolean({FAILED})");
+        page.wait_for(&ended, DRAWN).expect("it runs, or says why not");
+        let needs = needs(&page.run(FRAME).expect("a frame"));
+        let lacking: Vec<_> = needs.iter().filter(|(name, need)| **need > limits[**name]).collect();
+        println!("defaults / {divisor}: {lacking:?} lacking of {needs:?}");
+        assert_eq!(lacking.is_empty(), divisor == 1, "{lacking:?}");
+        if divisor == 1 {
+            let said = page.evaluate(SAID).expect("words");
+            assert_eq!(said, json!(["", false, true]));
+            assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+            continue;
+        }
+        has_failed(&mut page, "this device has ");
+        let said = page.evaluate(SAID).expect("words")[0].as_str().expect("a text").to_owned();
+        let is_said = |(name, need): &(&&str, &u64)| {
+            said.contains(&format!("needs {name} of {need}, this device has {}", limits[**name]))
+        };
+        assert!(lacking.iter().any(is_said), "{said}: {lacking:?}");
+    }
 }
 
 #[test]

@@ -13,6 +13,14 @@ pub(crate) enum Piece {
     Text(String),
 }
 
+impl Piece {
+    /// Whether it starts an element of this class.
+    pub(crate) fn has_class(&self, wanted: &str) -> bool {
+        let Self::Start(_, attributes) = self else { return false };
+        attributes.get("class").is_some_and(|names| names.split_whitespace().any(|name| name == wanted))
+    }
+}
+
 /// Elements whose text is no HTML.
 const RAW: [&str; 2] = ["script", "style"];
 

@@ -19,13 +19,21 @@ pub(crate) struct Site {
 }
 
 /// A page of it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct SitePage {
     /// Size in bytes.
     pub(crate) bytes: u64,
     pub(crate) pieces: Vec<Piece>,
     /// What its anchors may lead to.
     pub(crate) ids: BTreeSet<String>,
+    /// The pictures that open large, by the names that `#picture=` has: those of their files, without the ending.
+    pub(crate) pictures: BTreeSet<String>,
+    /// The rungs that `#compare=` may name, by their ladders.
+    pub(crate) ladders: BTreeMap<String, BTreeSet<String>>,
+    /// Whether it draws a scene, whose state its address holds.
+    pub(crate) is_live: bool,
+    /// The names of its controls.
+    pub(crate) controls: BTreeSet<String>,
 }
 
 /// Returns the site, as `cook gallery` writes it.
@@ -49,13 +57,7 @@ fn build() -> PathBuf {
 }
 
 fn page(path: &Path) -> SitePage {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let pieces = html::pieces(&text);
-    let ids = pieces.iter().filter_map(|piece| match piece {
-        Piece::Start(_, attributes) => attributes.get("id").cloned(),
-        _ => None,
-    });
-    SitePage { bytes: text.len() as u64, ids: ids.collect(), pieces }
+    SitePage::of(&std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())))
 }
 
 /// The mirrors' documentation, which is not the site's own.
@@ -103,6 +105,34 @@ impl Site {
 }
 
 impl SitePage {
+    /// Reads a page.
+    pub(crate) fn of(text: &str) -> Self {
+        let pieces = html::pieces(text);
+        let mut page = Self { bytes: text.len() as u64, ..Self::default() };
+        let (mut ladder, mut is_side) = (None, false);
+        for piece in &pieces {
+            let Piece::Start(name, attributes) = piece else { continue };
+            page.ids.extend(attributes.get("id").cloned());
+            page.is_live |= piece.has_class("live");
+            match name.as_str() {
+                "a" if piece.has_class("picture") => page.pictures.extend(attributes.get("href").map(|to| stem(to))),
+                "figure" => ladder = attributes.get("data-ladder").filter(|_| piece.has_class("compare")),
+                "select" | "input" => {
+                    is_side = attributes.contains_key("data-side");
+                    page.controls.extend(attributes.get("name").cloned());
+                }
+                "option" if is_side => {
+                    if let (Some(ladder), Some(rung)) = (ladder, attributes.get("value")) {
+                        page.ladders.entry(ladder.clone()).or_default().insert(rung.clone());
+                    }
+                }
+                _ => {}
+            }
+        }
+        page.pieces = pieces;
+        page
+    }
+
     /// Returns the values that the page's `select` with this id offers.
     pub(crate) fn options(&self, id: &str) -> Vec<String> {
         let is_it = |piece: &&Piece| matches!(piece, Piece::Start(_, attributes) if attributes.get("id").is_some_and(|of| of == id));
@@ -114,6 +144,25 @@ impl SitePage {
         };
         within.filter_map(value).collect()
     }
+}
+
+/// Returns the name of an address's file without its ending, as compare.js names pictures.
+fn stem(address: &str) -> String {
+    let file = address.rsplit('/').next().unwrap_or_default();
+    decoded(file.rsplit_once('.').map_or(file, |(stem, _)| stem))
+}
+
+/// Returns a part of an address, its bytes after `%` replaced.
+pub(crate) fn decoded(text: &str) -> String {
+    let mut bytes = Vec::new();
+    let mut rest = text.as_bytes();
+    while let Some((first, after)) = rest.split_first() {
+        let digits = after.get(..2).filter(|_| *first == b'%').and_then(|digits| std::str::from_utf8(digits).ok());
+        let escaped = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        bytes.push(escaped.unwrap_or(*first));
+        rest = if escaped.is_some() { &after[2..] } else { after };
+    }
+    String::from_utf8(bytes).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
 /// Returns the path that a relative address leads to, from a page's path; nothing for an address with a scheme.
@@ -150,4 +199,6 @@ fn addresses_are_resolved() {
     assert_eq!(of("../../etc/passwd").as_deref(), Some("(outside)/../../etc/passwd"));
     assert_eq!(of("/etc/passwd").as_deref(), Some("/etc/passwd"));
     assert_eq!([of("https://example.org/a"), of("data:,")], [None, None]);
+    assert_eq!(["walk-8%2Btracker", "100%", "%C3%A9", "a%2"].map(decoded), ["walk-8+tracker", "100%", "é", "a%2"]);
+    assert_eq!(["../images/a.b.jpg", "a%20b.png", "a"].map(stem), ["a.b", "a b", "a"]);
 }
