@@ -16,17 +16,11 @@
 /** The version of frame.json that this file reads. */
 const VERSION = 4;
 
-const TEXEL_BYTES = {
-  r8unorm: 1,
-  rgba8unorm: 4,
-  'rgba8unorm-srgb': 4,
-  rg16float: 4,
-  r32float: 4,
-  depth32float: 4,
-  rg32float: 8,
-  rgba16float: 8,
-  rgba32float: 16,
-};
+/** Bytes of a texel, by its format's name: `rgba16float` has four channels of 16 bits. */
+function texelBytes(format) {
+  const [, channels, bits] = /^(rgba|rg|r|depth)(\d+)/.exec(format);
+  return ((channels === 'depth' ? 1 : channels.length) * bits) / 8;
+}
 
 /** Or-s the flags of WebGPU's names. */
 const flags = (names, all) => names.reduce((sum, name) => sum | all[name], 0);
@@ -64,20 +58,15 @@ export class Frame {
     const pictures = {};
     for (const { name, format, size } of this.rows.pictures) {
       const [width, height] = size;
-      const bytes = new ArrayBuffer(width * height * TEXEL_BYTES[format]);
+      const bytes = new ArrayBuffer(width * height * texelBytes(format));
       const texels = format.endsWith('32float') ? new Float32Array(bytes) : new Uint8Array(bytes);
       pictures[name] = { width, height, texels };
     }
-    let encoder = this.device.createCommandEncoder();
     for (const pass of this.rows.passes) {
-      this.#encode(encoder, pass);
-      if (pass.kind !== 'read') continue;
+      this.draw((other) => other === pass);
       // The next tile is copied to the same buffer, so this one is read first.
-      this.device.queue.submit([encoder.finish()]);
-      await this.#read(pass, pictures[pass.picture]);
-      encoder = this.device.createCommandEncoder();
+      if (pass.kind === 'read') await this.#read(pass, pictures[pass.picture]);
     }
-    this.device.queue.submit([encoder.finish()]);
     return pictures;
   }
 
@@ -105,13 +94,15 @@ export class Frame {
     this.draw((pass) => pass.kind !== 'read' && places.includes(passes.indexOf(pass)));
   }
 
-  /** Milliseconds that the device takes for all passes, the median of some runs, three if they take long: by its own
-   * clock if it has the feature `timestamp-query`, by this page's otherwise. */
+  /** Milliseconds that the device takes for all passes, the median of some runs. If all together take over a second,
+   * five are enough, and three if one alone does. It goes by the device's own clock if that has the feature
+   * `timestamp-query`, by this page's otherwise. */
   async time(runs = 9) {
-    const clock = this.device.features.has('timestamp-query') && this.#clock();
+    const clock = this.device.features.has('timestamp-query') ? this.#clock() : null;
     const times = [];
     for (const start = performance.now(); times.length < runs; ) {
-      if (times.length === 3 && performance.now() - start > 1000) break;
+      const enough = times.some((time) => time > 1000) ? 3 : 5;
+      if (times.length >= enough && performance.now() - start > 1000) break;
       await this.device.queue.onSubmittedWorkDone();
       const begin = performance.now();
       this.draw(undefined, clock?.queries);
@@ -119,6 +110,7 @@ export class Frame {
       await this.device.queue.onSubmittedWorkDone();
       times.push(passed || performance.now() - begin);
     }
+    clock?.destroy();
     return times.sort((a, b) => a - b)[times.length >> 1];
   }
 
@@ -169,16 +161,30 @@ export class Frame {
 
   /** Refuses a device that is too small. */
   #check(limits) {
-    const { resources } = this.rows;
-    const bytes = Math.max(...resources.map((row) => row.bytes ?? 0));
+    const { bind_groups, passes, pipelines, resources } = this.rows;
+    const most = (rows, needs) => Math.max(0, ...rows.flatMap(needs));
+    const sizes = (of) => resources.flatMap(({ dimension, size }) => (dimension === of ? [size] : []));
+    const bytes = (usage) => most(resources, (row) => (row.usage?.includes(usage) ? (row.bytes ?? 0) : 0));
+    const dispatches = passes.flatMap((pass) => pass.dispatches ?? []);
+    const isStorage = ({ resource }) => resources[resource].usage?.includes('STORAGE');
+    const entries = ({ groups }) => groups.flatMap((group) => bind_groups[group]?.entries ?? []);
     const needs = {
-      maxTextureDimension2D: Math.max(...resources.flatMap(({ size }) => size?.slice(0, 2) ?? 0)),
-      maxBufferSize: bytes,
-      maxStorageBufferBindingSize: bytes,
+      maxTextureDimension2D: most(sizes('2d'), (size) => size.slice(0, 2)),
+      maxTextureDimension3D: most(sizes('3d'), (size) => size),
+      maxTextureArrayLayers: most(sizes('2d'), (size) => size[2]),
+      maxBufferSize: most(resources, (row) => row.bytes ?? 0),
+      maxStorageBufferBindingSize: bytes('STORAGE'),
+      maxUniformBufferBindingSize: bytes('UNIFORM'),
+      maxBindGroups: most(bind_groups, ({ group }) => group + 1),
+      maxBindingsPerBindGroup: most(bind_groups, (row) => row.entries.map(({ binding }) => binding + 1)),
+      // Two stages share those of a draw, and the frame does not say how.
+      maxStorageBuffersPerShaderStage: most(dispatches, (dispatch) => entries(dispatch).filter(isStorage).length),
+      maxColorAttachments: most(pipelines, (row) => row.targets?.length ?? 0),
+      maxComputeWorkgroupsPerDimension: most(dispatches, ({ workgroups }) => workgroups ?? 0),
     };
     for (const [name, need] of Object.entries(needs)) {
-      const there = limits[name];
-      if (there < need) throw new Error(`this graphics device is too small: its ${name} is ${there}, not ${need}`);
+      const numbers = `${name} is ${limits[name]}, and the frame needs ${need}`;
+      if (limits[name] < need) throw new Error(`this graphics device is too small: its ${numbers}`);
     }
   }
 
@@ -186,9 +192,8 @@ export class Frame {
   #clock() {
     const { device } = this;
     const queries = device.createQuerySet({ type: 'timestamp', count: 2 });
-    const uses = [['QUERY_RESOLVE', 'COPY_SRC'], ['COPY_DST', 'MAP_READ']];
-    const usages = uses.map((names) => flags(names, GPUBufferUsage));
-    const [resolved, mapped] = usages.map((usage) => device.createBuffer({ size: 16, usage }));
+    const buffer = (...usage) => device.createBuffer({ size: 16, usage: flags(usage, GPUBufferUsage) });
+    const [resolved, mapped] = [buffer('QUERY_RESOLVE', 'COPY_SRC'), buffer('COPY_DST', 'MAP_READ')];
     const read = async () => {
       const encoder = device.createCommandEncoder();
       encoder.resolveQuerySet(queries, 0, 2, resolved, 0);
@@ -199,7 +204,7 @@ export class Frame {
       mapped.unmap();
       return Number(end - begin) / 1e6;
     };
-    return { queries, read };
+    return { queries, read, destroy: () => [queries, resolved, mapped].forEach((held) => held.destroy()) };
   }
 
   #resource(row, contents) {
@@ -222,7 +227,7 @@ export class Frame {
     const texture = device.createTexture({ size, format, dimension, usage, mipLevelCount: levels });
     for (let mipLevel = 0, offset = 0; contents !== null && offset < contents.byteLength; mipLevel++) {
       const [width, height] = size.map((texels) => Math.max(1, texels >> mipLevel));
-      const layout = { offset, bytesPerRow: width * TEXEL_BYTES[format], rowsPerImage: height };
+      const layout = { offset, bytesPerRow: width * texelBytes(format), rowsPerImage: height };
       device.queue.writeTexture({ texture, mipLevel }, contents, layout, [width, height, size[2]]);
       offset += layout.bytesPerRow * height * size[2];
     }
@@ -290,13 +295,12 @@ export class Frame {
       const view = this.#layer(texture, layer);
       return { view, clearValue: clear ?? undefined, loadOp: clear ? 'clear' : 'load', storeOp: 'store' };
     });
-    const depth = pass.depth && {
+    const depthStencilAttachment = pass.depth ? {
       view: this.#layer(pass.depth.texture, 0),
       depthClearValue: 1,
       depthLoadOp: pass.depth.load ? 'load' : 'clear',
       depthStoreOp: pass.depth.keep ? 'store' : 'discard',
-    };
-    const depthStencilAttachment = depth ?? undefined;
+    } : undefined;
     const render = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment, timestampWrites });
     if (pass.viewport) render.setViewport(...pass.viewport, 0, 1);
     for (const draw of pass.draws) {

@@ -282,6 +282,7 @@
   const Lightbox = {
     place: 0,
     opener: null,
+    before: '',
 
     /** The page's pictures, in order, each file once. */
     links() {
@@ -315,6 +316,9 @@
       if (place < 0) return;
       this.place = place;
       this.opener = opener;
+      // A live scene may keep its state there, which closing brings back.
+      const hash = location.hash.slice(1);
+      if (!hash.startsWith('picture=')) this.before = hash;
       const dialog = this.dialog();
       this.show();
       if (!dialog.open) dialog.showModal();
@@ -355,7 +359,8 @@
 
     closed() {
       this.opener?.focus();
-      address('');
+      address(this.before);
+      this.before = '';
     },
   };
 

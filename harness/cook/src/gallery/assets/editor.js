@@ -71,7 +71,7 @@
     async begin(name) {
       this.function.value = name;
       try {
-        this.original ??= (await gallery.load(`rows/${this.module}`)).text;
+        this.original ??= await gallery.load(`source/${this.module}`);
       } catch (error) {
         return this.fail(error);
       }

@@ -58,7 +58,6 @@ class Live {
     const encoder = device.createCommandEncoder();
     const copy = (texture, to, left, right) => {
       const origin = [left, 0];
-      if (right <= left) return;
       encoder.copyTextureToTexture({ texture, origin }, { texture: to, origin }, [right - left, height]);
     };
     copy(next[0].picture, shown, 0, wipe);

@@ -46,27 +46,38 @@ function parsed(fragment) {
   const { rungs, toggles, sliders } = live.manifest;
   const state = structuredClone(live.start);
   for (const name of ['rung', 'other']) if (Object.hasOwn(rungs, asked.get(name))) state[name] = asked.get(name);
-  const number = (name) => Number.parseFloat(asked.get(name));
-  if (Number.isFinite(number('wipe'))) state.wipe = clamped(number('wipe'), 0, 100);
-  for (const name of Object.keys(toggles)) if (asked.has(name)) state.on[name] = asked.get(name) === 'on';
+  // An effect and its slider may have one name, then the address has it twice: once a word, once a number.
+  const number = (name) => asked.getAll(name).map(Number.parseFloat).find(Number.isFinite);
+  if (number('wipe') !== undefined) state.wipe = clamped(number('wipe'), 0, 100);
+  for (const name of Object.keys(toggles)) {
+    const word = asked.getAll(name).find((text) => text === 'on' || text === 'off');
+    if (word) state.on[name] = word === 'on';
+  }
   for (const [name, { values }] of Object.entries(sliders)) {
-    if (Number.isFinite(number(name))) state.steps[name] = nearest(values, number(name));
+    if (number(name) !== undefined) state.steps[name] = nearest(values, number(name));
   }
   const view = (asked.get('view') ?? '').split(',').map(Number);
   return view.length === 3 && view.every(Number.isFinite) ? { ...state, ...placed(...view) } : state;
 }
 
+/** Whether a fragment says anything of the state; those of headings, pictures and comparisons do not. */
+function isOfState(fragment) {
+  const { toggles, sliders } = live.manifest;
+  const known = ['rung', 'other', 'wipe', 'view', ...Object.keys(toggles), ...Object.keys(sliders)];
+  return fragment.includes('=') && [...new URLSearchParams(fragment).keys()].some((key) => known.includes(key));
+}
+
 /** The fragment that holds a state: what is not as at the start. */
 function fragment() {
   const { start, state, manifest } = live;
-  const found = {};
-  const keep = (name, value, usual, text) => value !== usual && (found[name] = text);
+  const found = [];
+  const keep = (name, value, usual, text) => value !== usual && found.push([name, text]);
   for (const name of ['rung', 'other', 'wipe']) keep(name, state[name], start[name], state[name]);
   for (const [name, on] of Object.entries(state.on)) keep(name, on, start.on[name], on ? 'on' : 'off');
   for (const [name, step] of Object.entries(state.steps)) {
     keep(name, step, start.steps[name], manifest.sliders[name].values[step]);
   }
-  if (live.isTurned) found.view = [state.polar, state.azimuth, state.distance].map(round).join();
+  if (live.isTurned) found.push(['view', [state.polar, state.azimuth, state.distance].map(round).join()]);
   return new URLSearchParams(found).toString();
 }
 
@@ -139,9 +150,11 @@ function reflect() {
   }
   for (const [name, { values, unit, start }] of Object.entries(manifest.sliders)) {
     const text = `${Number(values[state.steps[name]].toPrecision(3))} ${unit}`.trim();
-    input(name).value = state.steps[name];
-    input(name).disabled = !rungs.some((rung) => rung?.moves.some(({ slider }) => slider === name));
-    input(name).setAttribute('aria-valuetext', text);
+    // Not by its name, which an effect may have too.
+    const range = one(`[data-slider="${name}"] input`);
+    range.value = state.steps[name];
+    range.disabled = !rungs.some((rung) => rung?.moves.some(({ slider }) => slider === name));
+    range.setAttribute('aria-valuetext', text);
     one(`[data-slider="${name}"] output`).textContent = text;
     one(`[data-slider="${name}"] [data-reset]`).disabled = state.steps[name] === start;
   }
@@ -466,17 +479,30 @@ canvas.addEventListener('keydown', (event) => {
   move(...keys[event.key]);
 });
 
+// Not by its name, which an effect may have too.
+const picker = one('input[type="file"]');
+
+/** Takes a file that was dropped, or says why not. */
+function dropped(file) {
+  if (!picker) tell('This scene takes no environment.');
+  else if (canvas.hidden) tell('Start the scene first, then drop the file again.');
+  else lightBy(file);
+}
+
 const stage = one('.live-picture');
 for (const kind of ['dragover', 'dragleave', 'drop']) {
-  stage.addEventListener(kind, (event) => {
-    if (!live?.device || !input('environment')) return;
+  section.addEventListener(kind, (event) => {
+    // Otherwise the browser leaves the page for the file.
     event.preventDefault();
-    stage.classList.toggle('over', kind === 'dragover');
-    if (kind === 'drop' && event.dataTransfer.files[0]) lightBy(event.dataTransfer.files[0]);
+    stage.classList.toggle('over', kind === 'dragover' && !canvas.hidden && picker !== null);
+    if (kind === 'drop' && event.dataTransfer.files[0]) dropped(event.dataTransfer.files[0]);
   });
 }
 
-window.addEventListener('hashchange', () => live?.device && set(parsed(location.hash.slice(1))));
+window.addEventListener('hashchange', () => {
+  const fragment = location.hash.slice(1);
+  if (live?.device && isOfState(fragment)) set(parsed(fragment));
+});
 run.addEventListener('click', start);
 run.hidden = false;
 if (!navigator.gpu) tell('This browser has no WebGPU, so the picture that the renderer draws stands here.');

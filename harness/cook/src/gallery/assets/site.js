@@ -113,14 +113,18 @@ for (const button of document.querySelectorAll('button[hidden]:is(.copy, .search
 
 // What scrolls sideways can be reached and scrolled with the keyboard; what does not is no stop for it.
 function reachScrollers() {
+  const usual = { tabindex: '0', role: 'group', 'aria-label': 'Scrolls' };
   for (const box of document.querySelectorAll('.scroll')) {
     const scrolls = box.scrollWidth > box.clientWidth + 1 || box.scrollHeight > box.clientHeight + 1;
-    if (scrolls) {
-      box.tabIndex = 0;
-      box.setAttribute('role', box.getAttribute('role') ?? 'group');
-      if (!box.hasAttribute('aria-label')) box.setAttribute('aria-label', 'Scrolls');
-    } else if (box.tabIndex === 0) {
-      for (const name of ['tabindex', 'role', 'aria-label']) box.removeAttribute(name);
+    // What the page itself wrote stays; the names of what is added here are kept on the element.
+    const { reached } = box.dataset;
+    if (scrolls && reached === undefined) {
+      const lacking = Object.keys(usual).filter((name) => !box.hasAttribute(name));
+      for (const name of lacking) box.setAttribute(name, usual[name]);
+      box.dataset.reached = lacking.join(' ');
+    } else if (!scrolls && reached !== undefined) {
+      for (const name of reached.split(' ').filter(Boolean)) box.removeAttribute(name);
+      delete box.dataset.reached;
     }
   }
 }
@@ -168,7 +172,7 @@ document.querySelector('.theme').addEventListener('click', () => {
   gallery.say(`${next} colours`);
 });
 
-// Search over functions, pages, headings and pictures.
+// Search over functions, rungs, pages, headings and pictures.
 const search = (() => {
   const MOST = 40;
   let dialog = null;
