@@ -125,7 +125,7 @@ fn functions_hold_in_their_pages() {
     for (module, name) in crate::sampled(all, ONE_IN) {
         page.open(&site().address(&format!("modules/{module}.html"))).expect(module);
         let check = format!(
-            "const {{ text }} = await gallery.load('rows/{module}');
+            "const text = await gallery.load('source/{module}');
             const {{ rows, held, messages }} = await gallery.check('{name}', text);
             return [held === rows && rows > 0, held, rows, messages];"
         );
