@@ -106,8 +106,11 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
         .with(&["diagram.css", "ladder.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
-    for kind in of.ladders.iter().filter_map(|name| Kind::named(name)) {
-        let path = [&page.path, "#ladder-", kind.name].concat();
+    for (at, kind) in of.ladders.iter().filter_map(|name| Kind::named(name)).enumerate() {
+        // The first is on this page, the others on the guide that shows all.
+        let guide = super::super::guides::GUIDES.iter().find(|guide| at > 0 && guide.ladders.contains(&kind.name));
+        let on = guide.map_or_else(|| page.path.clone(), |guide| ["guides/", guide.name, ".html"].concat());
+        let path = [&on, "#ladder-", kind.name].concat();
         page.entries.extend(kind.steps().iter().map(|step| {
             let figures = format!("{} {:.2}, {:.1} ms on two CPU cores", kind.error, step.error, step.ms);
             Entry::rung(&step.rung, kind.title, &path, figures)
