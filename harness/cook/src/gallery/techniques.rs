@@ -142,7 +142,7 @@ mod tests {
             assert!(Committed::all().any(|picture| picture.name() == technique.hero), "{}", technique.hero);
             let function =
                 |name: &&str| cookbook::module(name).is_some_and(|of| of.function(technique.function).is_some());
-            assert!(technique.modules.iter().any(|name| function(name)), "{}", technique.function);
+            assert!(technique.modules.iter().any(function), "{}", technique.function);
         }
     }
 
