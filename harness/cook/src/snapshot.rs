@@ -17,7 +17,7 @@ pub(crate) use comparison::{flip, flip_of_rgb};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings, file};
-use lapidary_scene::{BUILT_IN, Scene, SceneError};
+use lapidary_scene::{BUILT_IN, SAMPLES, Scene, SceneError};
 pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
@@ -107,11 +107,11 @@ impl Committed {
     /// Returns how finely a pixel is sampled.
     #[must_use]
     pub fn samples(self) -> String {
-        match self {
-            Self::Shot(shot) if shot.samples == 1 => "1 sample a pixel".to_owned(),
-            Self::Shot(shot) => format!("{} samples a pixel", shot.samples * shot.samples),
-            Self::Strip | Self::BesideWalks(_) => "16 samples a pixel".to_owned(),
-        }
+        let side = match self {
+            Self::Shot(shot) => shot.samples,
+            Self::Strip | Self::BesideWalks(_) => SAMPLES,
+        };
+        if side == 1 { "1 sample a pixel".to_owned() } else { format!("{} samples a pixel", side * side) }
     }
 
     /// Returns the folder of its files.

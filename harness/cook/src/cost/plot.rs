@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
 /// Width and height of a plot in pixels.
-pub const SIZE: (u32, u32) = (1200, 760);
+const SIZE: (u32, u32) = (1200, 760);
 /// Colours of the series, safe for colour-blind readers (Okabe and Ito 2008).
 pub const COLORS: [RGBColor; 6] = [
     RGBColor(0x00, 0x00, 0x00),

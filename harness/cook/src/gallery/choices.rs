@@ -5,6 +5,7 @@ use crate::cost::{Report, Table};
 use lapidary_plan::Quality;
 use lapidary_plan::ladder::Ladder;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The reports of a GPU, by the ladder's report.
 const GPU: [(&str, &str); 4] = [
@@ -39,21 +40,31 @@ pub struct Choice {
 
 /// Returns the choices of every ladder.
 pub fn all() -> Vec<Choice> {
-    KINDS.iter().flat_map(|kind| Quality::ALL.into_iter().filter_map(|quality| choice(kind, quality))).collect()
+    let of_kind = |kind: &'static Kind| {
+        let on_gpu = times_on_gpu(kind);
+        Quality::ALL.into_iter().filter_map(move |quality| choice(kind, quality, &on_gpu))
+    };
+    KINDS.iter().flat_map(of_kind).collect()
 }
 
-fn choice(kind: &'static Kind, quality: Quality) -> Option<Choice> {
+/// Returns the milliseconds that rungs of a ladder take on the GPU; those of a stone are of a frame of 1920 by 1080
+/// pixels that it fills.
+fn times_on_gpu(kind: &Kind) -> BTreeMap<String, f64> {
+    let Some((_, record)) = GPU.iter().find(|(report, _)| *report == kind.report) else { return BTreeMap::new() };
+    if kind.report != "gem" {
+        let steps = Ladder::of_record(kind.technique, record).map(|ladder| ladder.steps).unwrap_or_default();
+        return steps.into_iter().map(|step| (step.rung, step.ms)).collect();
+    }
+    let report: Report = serde_json::from_str(record).unwrap_or_default();
+    let filled = report.rows.into_iter().filter(|row| row.view == "filled" && row.measure == "time");
+    filled.filter_map(|row| Some((row.rung, row.ms?))).collect()
+}
+
+fn choice(kind: &'static Kind, quality: Quality, on_gpu: &BTreeMap<String, f64>) -> Option<Choice> {
     let ladder = kind.technique.ladder()?;
     let rung = kind.technique.rung(quality).to_string();
     let step = ladder.step(&rung)?;
     let fast = ladder.step(&kind.technique.rung(Quality::Fast).to_string())?;
-    let on_gpu = || {
-        let (_, record) = GPU.iter().find(|(report, _)| *report == kind.report)?;
-        if kind.report == "gem" {
-            return filled(&serde_json::from_str(record).ok()?, &rung);
-        }
-        Some(Ladder::of_record(kind.technique, record).ok()?.step(&rung)?.ms)
-    };
     Some(Choice {
         ladder: kind.name,
         title: kind.title,
@@ -61,15 +72,10 @@ fn choice(kind: &'static Kind, quality: Quality) -> Option<Choice> {
         measure: ladder.measure,
         error: format!("{:.2}", step.error),
         ms: format!("{:.1}", step.ms),
-        gpu: on_gpu().map_or_else(|| "not measured".to_owned(), |ms| format!("{ms:.1}")),
+        gpu: on_gpu.get(&rung).map_or_else(|| "not measured".to_owned(), |ms| format!("{ms:.1}")),
         times: format!("{:.1}", step.ms / fast.ms),
         rung,
     })
-}
-
-/// Returns the milliseconds of a frame of 1920 by 1080 pixels that the stone fills.
-fn filled(report: &Report, rung: &str) -> Option<f64> {
-    report.rows.iter().find(|row| row.rung == rung && row.view == "filled" && row.measure == "time")?.ms
 }
 
 /// What the times are of.

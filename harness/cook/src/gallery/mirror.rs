@@ -39,17 +39,18 @@ impl Pair {
 /// Pairs each function of a module with its mirror among the crate's sources, a text for each file. Functions
 /// without a mirror of their name are left out.
 pub fn pairs(module: &Module, sources: &[String]) -> Vec<Pair> {
-    let prefix = [module.name, "_"].concat();
-    let pair = |name: &str| {
-        let short = name.strip_prefix(&prefix)?;
-        let wgsl = declaration(module.whole, "fn ", name)?;
-        // A name that is a keyword of Rust's is written as r#NAME.
-        let rust = |keyword| sources.iter().find_map(|source| declaration(source, keyword, short));
-        let rust = rust("fn ").or_else(|| rust("fn r#"))?;
-        let (wgsl, rust) = aligned(&wgsl, &rust);
-        Some(Pair { name: name.to_owned(), wgsl, rust })
-    };
-    module.functions.iter().filter_map(|function| pair(&function.name)).collect()
+    module.functions.iter().filter_map(|function| pair(module, &function.name, sources)).collect()
+}
+
+/// Pairs one function with its mirror; `None` if one of both is not there.
+pub fn pair(module: &Module, name: &str, sources: &[String]) -> Option<Pair> {
+    let short = name.strip_prefix(module.name)?.strip_prefix('_')?;
+    let wgsl = declaration(module.whole, "fn ", name)?;
+    // A name that is a keyword of Rust's is written as r#NAME.
+    let rust = |keyword| sources.iter().find_map(|source| declaration(source, keyword, short));
+    let rust = rust("fn ").or_else(|| rust("fn r#"))?;
+    let (wgsl, rust) = aligned(&wgsl, &rust);
+    Some(Pair { name: name.to_owned(), wgsl, rust })
 }
 
 /// Reads the sources of a module's mirror: those of its crate, but for the oracle, the formulas and the tests.

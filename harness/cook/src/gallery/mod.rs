@@ -34,6 +34,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use take::Take;
+use techniques::Technique;
 use templates::Markup;
 
 /// What the gallery is made of besides the cookbook itself.
@@ -161,10 +162,21 @@ impl Parts<'_> {
     fn doc(&self, file: &str) -> &str {
         self.docs.get(file).unwrap_or_else(|| panic!("{file} was not read"))
     }
+
+    /// Returns the picture of that name; `None` if it is not shown.
+    fn picture(&self, name: &str) -> Option<&Shown> {
+        self.pictures.iter().find(|picture| picture.name == name)
+    }
+
+    /// Returns the scene of a technique's live page; `None` if there is none.
+    fn live_scene(&self, of: &Technique) -> Option<&'static str> {
+        self.live.iter().find(|live| live.scene == of.live).map(|live| live.scene)
+    }
 }
 
 /// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is either complete or
-/// unchanged, and the same site gives the same bytes.
+/// unchanged, and the same site gives the same bytes, but for pictures by Godunov's scheme, which rounds by the order in
+/// which a device takes up its tiles.
 ///
 /// # Errors
 /// Returns an error if a picture or a doc page is missing, a ladder, a live scene or a shader cannot be drawn, the file
@@ -177,14 +189,11 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
 fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     let adapter = short(&site.adapter);
     let shown = pictures::place(&site.pictures, adapter, folder)?;
-    let mut ladders = BTreeMap::new();
+    let (mut ladders, mut live) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = site.device {
         for of in ladder::pictures(gpu, folder)? {
             ladders.insert(of.kind.name.to_owned(), ladder::section(of.kind, &of.pictures, "../")?);
         }
-    }
-    let mut live = Vec::new();
-    if let Some(gpu) = site.device {
         live::write(folder, gpu)?;
         for scene in &live::SCENES {
             live.push(LivePage {

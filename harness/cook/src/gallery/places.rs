@@ -2,6 +2,7 @@
 
 use super::guides::{ENGINES, GUIDES};
 use super::markdown::{Image, Links};
+use super::pages::address;
 use super::pictures::Shown;
 use crate::cookbook;
 use std::collections::BTreeMap;
@@ -19,7 +20,7 @@ impl Places {
         let mut pages = BTreeMap::new();
         let mut put = |file: String, page: String| pages.insert(file, page);
         for module in cookbook::modules() {
-            let page = ["modules/", module.name, ".html"].concat();
+            let page = address("modules", module.name);
             for file in [
                 format!("docs/{}.md", module.name),
                 format!("wgsl/{}.wgsl", module.name),
@@ -30,12 +31,12 @@ impl Places {
             }
         }
         for recipe in lapidary_wgsl::RECIPES {
-            let page = format!("recipes/{}.html", recipe.name);
+            let page = address("recipes", recipe.name);
             put(format!("docs/recipes/{}.md", recipe.name), page.clone());
             put(format!("wgsl/recipes/{}.wgsl", recipe.name), page);
         }
         for guide in GUIDES.iter().chain(&ENGINES) {
-            put(guide.file.to_owned(), format!("guides/{}.html", guide.name));
+            put(guide.file.to_owned(), address("guides", guide.name));
         }
         put("README.md".to_owned(), "index.html".to_owned());
         put("snapshots/README.md".to_owned(), "pictures.html".to_owned());

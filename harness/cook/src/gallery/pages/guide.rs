@@ -7,7 +7,7 @@ use super::super::{
     templates::{self, Markup},
     text,
 };
-use super::{Entry, Page};
+use super::{Entry, Page, address};
 use serde::Serialize;
 
 /// The guide to the rungs.
@@ -44,7 +44,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
         note: super::super::choices::NOTE,
     };
     let body = templates::render("guide.html", values);
-    let path = ["guides/", of.name, ".html"].concat();
+    let path = address("guides", of.name);
     let description = text::first_sentence(&doc.summary);
     let mut page = Page::new("guide", path, of.title, description, body).with(&["diagram.css", "ladder.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, description)];

@@ -10,7 +10,7 @@ mod technique;
 use super::Parts;
 use super::guides::{ENGINES, GUIDES};
 use super::search::Entry;
-use super::techniques::TECHNIQUES;
+use super::techniques::{TECHNIQUES, Technique};
 use super::templates::{self, Markup};
 use crate::cookbook::{self, header::LICENCE};
 use serde::Serialize;
@@ -60,6 +60,17 @@ impl Page {
     }
 }
 
+/// Returns the path of a page from the site's root.
+pub fn address(folder: &str, name: &str) -> String {
+    [folder, "/", name, ".html"].concat()
+}
+
+/// Returns the techniques that something belongs to: their pages, from a page in another folder, and their titles.
+fn techniques_with(has: impl Fn(&Technique) -> bool) -> Vec<(String, &'static str)> {
+    let of = TECHNIQUES.iter().filter(|of| has(of));
+    of.map(|of| (["../", &address("techniques", of.name)].concat(), of.title)).collect()
+}
+
 /// Returns all pages, in the order in which one reads on.
 pub fn all(parts: &Parts<'_>) -> Vec<Page> {
     let mut pages = vec![start::page(parts)];
@@ -79,7 +90,7 @@ struct Live<'a> {
 }
 
 fn live_page(parts: &Parts<'_>, live: &super::LivePage) -> Page {
-    let path = ["live/", live.scene, ".html"].concat();
+    let path = address("live", live.scene);
     let body = templates::render("live_page.html", Live { live, ladder: parts.ladders.get(live.ladder) });
     let description = "The frames that the renderer makes, run by your browser on your GPU.";
     let mut page = Page::new("live", path, live.title, description, body)
@@ -106,11 +117,7 @@ struct Group<'a> {
 }
 
 fn groups<'a>(parts: &'a Parts<'_>, current: &str) -> Vec<Group<'a>> {
-    let link = |folder: &str, name: &str, title: &'a str, code: bool| Link {
-        path: [folder, "/", name, ".html"].concat(),
-        title,
-        code,
-    };
+    let link = |folder: &str, name: &str, title: &'a str, code: bool| Link { path: address(folder, name), title, code };
     let techniques = TECHNIQUES.iter().map(|of| link("techniques", of.name, of.title, false));
     let pictures = Link { path: "pictures.html".to_owned(), title: "All pictures", code: false };
     let list: [(&str, Vec<Link<'_>>, bool); 6] = [

@@ -8,7 +8,7 @@ use super::super::{
     templates::{self, Markup},
     text::{self, Span, prose},
 };
-use super::{Entry, Page};
+use super::{Entry, Page, address, techniques_with};
 use crate::cookbook::{Module, header::FunctionDoc};
 use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use serde::Serialize;
@@ -53,7 +53,7 @@ struct Values<'a> {
 
 /// Returns the page of a module.
 pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
-    let path = ["modules/", module.name, ".html"].concat();
+    let path = address("modules", module.name);
     let file = ["docs/", module.name, ".md"].concat();
     let doc = markdown::page(module.page, &parts.places.of(&file));
     let pairs = mirror::pairs(module, parts.mirrors.get(module.name).map_or(&[], Vec::as_slice));
@@ -73,7 +73,6 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
         bounds: bounds(&function.accuracy),
         pair: pairs.iter().find(|pair| pair.name == function.name).map(mirror::Pair::coloured),
     });
-    let techniques = super::super::techniques::TECHNIQUES.iter().filter(|of| of.modules.contains(&module.name));
     let values = Values {
         name: module.name,
         purpose: prose(&module.header.purpose),
@@ -90,7 +89,7 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
         diagrams: parts.diagrams.iter().filter(|diagram| diagram.module == module.name).collect(),
         editor: parts.editors.get(module.name),
         rustdoc: parts.rustdoc.then(|| ["../rustdoc/lapidary_", module.name, "/index.html"].concat()),
-        techniques: techniques.map(|of| (["../techniques/", of.name, ".html"].concat(), of.title)).collect(),
+        techniques: techniques_with(|of| of.modules.contains(&module.name)),
     };
     let mut page =
         Page::new("module", path, module.name, &text::plain(&doc.summary), templates::render("module.html", values))

@@ -7,7 +7,7 @@ use super::super::{
     templates::{self, Markup},
     text::{Span, credit, prose},
 };
-use super::{Entry, Page};
+use super::{Entry, Page, address, techniques_with};
 use crate::cookbook::header::parse_header;
 use lapidary_wgsl::Recipe;
 use serde::Serialize;
@@ -28,7 +28,7 @@ struct Values<'a> {
 
 /// Returns the page of a recipe.
 pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
-    let path = ["recipes/", recipe.name, ".html"].concat();
+    let path = address("recipes", recipe.name);
     let file = ["docs/recipes/", recipe.name, ".md"].concat();
     let host = parts
         .docs
@@ -38,7 +38,6 @@ pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
     let purpose = header.as_ref().map_or("", |header| header.purpose.as_str());
     let whole = super::super::source_of_recipe(recipe);
     let overrides = recipe.own_text().into_iter().flat_map(overrides).map(|(name, text)| (name, prose(&text)));
-    let techniques = super::super::techniques::TECHNIQUES.iter().filter(|of| of.recipes.contains(&recipe.name));
     let values = Values {
         name: recipe.name,
         purpose: prose(purpose),
@@ -48,7 +47,7 @@ pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
         wgsl: highlight::pieces(recipe.source, Language::Wgsl),
         overrides: overrides.collect(),
         host: Markup([host.lead.0, host.introduction.0, host.rest.0].concat()),
-        techniques: techniques.map(|of| (["../techniques/", of.name, ".html"].concat(), of.title)).collect(),
+        techniques: techniques_with(|of| of.recipes.contains(&recipe.name)),
     };
     let mut page = Page::new("recipe", path, recipe.name, purpose, templates::render("recipe.html", values));
     page.entries = vec![Entry::page(recipe.name, &page.path, purpose)];

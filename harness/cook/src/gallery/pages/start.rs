@@ -18,14 +18,13 @@ struct Card<'a> {
 
 /// Returns the page.
 pub fn page(parts: &Parts<'_>) -> Page {
-    let picture = |name: &str| parts.pictures.iter().find(|picture| picture.name == name);
     let card = |of: &'static crate::gallery::techniques::Technique| Card {
         name: of.name,
         title: of.title,
         summary: of.summary,
         choice: default(parts, of),
-        live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
-        picture: picture(of.hero),
+        live: parts.live_scene(of),
+        picture: parts.picture(of.hero),
     };
     #[derive(Serialize)]
     struct Values<'a> {
@@ -36,7 +35,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
         recipes: usize,
     }
     let values = Values {
-        hero: picture("vitrine"),
+        hero: parts.picture("vitrine"),
         cards: TECHNIQUES.iter().map(card).collect(),
         modules: cookbook::modules().len(),
         functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),

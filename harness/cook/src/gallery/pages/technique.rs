@@ -9,7 +9,7 @@ use super::super::{
     techniques::Technique,
     templates::{self, Markup},
 };
-use super::{Entry, Page};
+use super::{Entry, Page, address};
 use crate::cookbook;
 use serde::Serialize;
 
@@ -60,31 +60,30 @@ const MOST_DIAGRAMS: usize = 4;
 
 /// Returns the page of a technique.
 pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
-    let path = ["techniques/", of.name, ".html"].concat();
+    let path = address("techniques", of.name);
     let file = ["docs/", of.doc, ".md"].concat();
     // The doc page is a module's own, or a guide.
     let kind = if cookbook::module(of.doc).is_some() { "modules" } else { "guides" };
-    let whole = ["../", kind, "/", of.doc, ".html"].concat();
+    let whole = ["../", &address(kind, of.doc)].concat();
     let doc = markdown::page(parts.doc(&file), &parts.places.of_part(&file, &whole));
     let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
-    let hero = parts.pictures.iter().find(|picture| picture.name == of.hero);
     let guide = |name: &str| {
         let guide = super::super::guides::GUIDES.iter().find(|guide| guide.name == name)?;
-        Some(Guide { path: ["../guides/", guide.name, ".html"].concat(), title: guide.title })
+        Some(Guide { path: ["../", &address("guides", guide.name)].concat(), title: guide.title })
     };
     let shown = |picture: &&Shown| picture.folder == of.pictures && picture.name != of.hero;
     let pair = of.modules.iter().find_map(|name| {
         let module = cookbook::module(name)?;
-        let pairs = mirror::pairs(module, parts.mirrors.get(name).map_or(&[], Vec::as_slice));
-        Some((module, pairs.into_iter().find(|pair| pair.name == of.function)?))
+        let of_crate = parts.mirrors.get(name).map_or(&[][..], Vec::as_slice);
+        Some((module, mirror::pair(module, of.function, of_crate)?))
     });
     let values = Values {
         technique: of.name,
         title: of.title,
         summary: of.summary,
-        hero,
+        hero: parts.picture(of.hero),
         scene: of.live,
-        live: parts.live.iter().find(|live| live.scene == of.live).map(|live| live.scene),
+        live: parts.live_scene(of),
         lead: doc.lead,
         equation: doc.equation,
         introduction: doc.introduction,
@@ -109,7 +108,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
     for (at, kind) in of.ladders.iter().filter_map(|name| Kind::named(name)).enumerate() {
         // The first is on this page, the others on the guide that shows all.
         let guide = super::super::guides::GUIDES.iter().find(|guide| at > 0 && guide.ladders.contains(&kind.name));
-        let on = guide.map_or_else(|| page.path.clone(), |guide| ["guides/", guide.name, ".html"].concat());
+        let on = guide.map_or_else(|| page.path.clone(), |guide| address("guides", guide.name));
         let path = [&on, "#ladder-", kind.name].concat();
         page.entries.extend(kind.steps().iter().map(|step| {
             let figures = format!("{} {:.2}, {:.1} ms on two CPU cores", kind.error, step.error, step.ms);
@@ -120,7 +119,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
 }
 
 /// Returns what a module or a recipe is for.
-pub fn purpose(name: &str) -> String {
+fn purpose(name: &str) -> String {
     let recipe = || {
         let recipe = lapidary_wgsl::recipe(name)?;
         Some(cookbook::header::parse_header(recipe.source).ok()?.purpose)
