@@ -10,7 +10,7 @@ pub const DIAGRAM: Diagram = Diagram {
     name: "curvature",
     module: "curvature",
     title: "Curvature from position and normal",
-    caption: "From one pixel to the next the position moves by the derivative p_x and the unit normal turns by n_x. \
+    caption: "From one pixel to the next the position moves by the derivative pₓ and the unit normal turns by nₓ. \
               Their quotient is the curvature κ, the inverse of the radius R of the circle that fits the surface: \
               positive on a bump, negative in a dent.",
     draw,
