@@ -191,7 +191,7 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     let shown = pictures::place(&site.pictures, adapter, folder)?;
     let (mut ladders, mut live) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = site.device {
-        for of in ladder::pictures(gpu, folder)? {
+        for of in ladder::pictures(gpu, adapter, folder)? {
             ladders.insert(of.kind.name.to_owned(), ladder::section(of.kind, &of.pictures, "../")?);
         }
         live::write(folder, gpu)?;

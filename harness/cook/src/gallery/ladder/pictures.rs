@@ -48,16 +48,16 @@ pub struct LadderPictures {
 }
 
 /// Draws all ladders' rungs into the site's folder, as `images/rungs/LADDER/RUNG.jpg`, and those by which choices are
-/// made once more as `RUNG.png`, to be subtracted.
+/// made once more as `RUNG.png`, to be subtracted. `adapter` is what captions call the device.
 ///
 /// # Errors
 /// Returns an error if a committed reference is damaged, or if the device or the file system fails.
-pub fn pictures(gpu: &Gpu, folder: &Path) -> Result<Vec<LadderPictures>, LadderError> {
-    KINDS.iter().map(|kind| of_kind(gpu, kind, folder)).collect()
+pub fn pictures(gpu: &Gpu, adapter: &str, folder: &Path) -> Result<Vec<LadderPictures>, LadderError> {
+    KINDS.iter().map(|kind| of_kind(gpu, adapter, kind, folder)).collect()
 }
 
 /// Draws a ladder's rungs.
-fn of_kind(gpu: &Gpu, kind: &'static Kind, folder: &Path) -> Result<LadderPictures, LadderError> {
+fn of_kind(gpu: &Gpu, adapter: &str, kind: &'static Kind, folder: &Path) -> Result<LadderPictures, LadderError> {
     let made = folder.join(place(kind));
     std::fs::create_dir_all(&made).map_err(|error| LadderError::Folder { path: made, error })?;
     if let Some(truth) = kind.truth.read(gpu)? {
@@ -65,7 +65,7 @@ fn of_kind(gpu: &Gpu, kind: &'static Kind, folder: &Path) -> Result<LadderPictur
         save(&truth, &folder.join(file_of(kind, REFERENCE, "png")))?;
     }
     drawn(kind, &kind.steps()).par_iter().try_for_each(|rung| draw(gpu, kind, rung, folder))?;
-    Ok(listed(&gpu.describe(), kind))
+    Ok(listed(adapter, kind))
 }
 
 /// Lists a ladder's pictures as this device draws them.
