@@ -131,7 +131,7 @@ fn stone(scene: &mut Scene, planes: &[Vec4], map: &FacetMap, walk: &Walk) {
     for (k, point) in points.iter().enumerate() {
         let last = k + 1 == points.len();
         scene.dot(view.at(*point), 5.5, if last { Paint::Accent } else { Paint::Warm });
-        let aside = [at(22.0, 10.0), at(-22.0, 14.0), at(24.0, -10.0)][k.min(2)];
+        let aside = [at(22.0, 10.0), at(-16.0, 27.0), at(-28.0, 5.0)][k.min(2)];
         let paint = if last { Paint::Accent } else { Paint::Warm };
         scene.symbol(view.at(*point) + aside, Anchor::Middle, paint, &format!("t_{k}"));
     }
@@ -168,10 +168,9 @@ fn cells(scene: &mut Scene, planes: &[Vec4], walk: &Walk) {
     for (k, point) in points.iter().enumerate() {
         let paint = if k + 1 == points.len() { Paint::Accent } else { Paint::Warm };
         scene.dot(*point, 4.5, paint).named("place");
-        if k != 1 {
-            let beside = at(CORNER.x - 20.0, point.y);
-            scene.symbol(beside, Anchor::Middle, paint, &format!("t_{k}"));
-        }
+        // The last two places are close together.
+        let beside = at(CORNER.x - 20.0, point.y + [0.0, 14.0, -8.0][k.min(2)]);
+        scene.symbol(beside, Anchor::Middle, paint, &format!("t_{k}"));
     }
     scene.note(CORNER + at(150.0, -26.0), Anchor::Middle, Paint::Ink, "facets by direction");
 }

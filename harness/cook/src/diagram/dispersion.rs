@@ -13,8 +13,8 @@ pub const DIAGRAM: Diagram = Diagram {
     name: "dispersion",
     module: "dispersion",
     title: "One ray and its gradient stand for all wavelengths",
-    caption: "Two facets of a diamond spread white light into a fan. Lines are wavelengths traced alone, from red to \
-              violet. Dots lie in the directions that the one ray in the middle gives for red and violet by its \
+    caption: "Two facets of a diamond spread white light into a fan. Lines are wavelengths traced alone: red, yellow \
+              and violet. Dots lie in the directions that the yellow ray alone gives for red and violet by its \
               gradient: right for red, a little off for violet, which is closer to total reflection.",
     draw,
 };
@@ -72,10 +72,12 @@ fn draw() -> Scene {
     let [one, other] = [ANGLES[0] + 90.0, ANGLES[1] - 90.0].map(|angle| EDGE + 3.0 * toward(angle));
     scene.area(&view.all(&[one, EDGE, other]), Paint::Accent, 0.12);
     scene.line(&view.all(&[one, EDGE, other]), INK);
+    // Where the stone goes on.
+    scene.line(&view.all(&[one, other]), DIM.thin().dashed());
     let entry = entry();
     scene.arrow(&view.all(&[entry - 1.9 * toward(ANGLES[2]), entry]), INK.wide());
     scene.note(view.at(entry - 1.9 * toward(ANGLES[2])) + at(-8.0, 24.0), Anchor::Middle, Paint::Ink, "white");
-    let reach = 3.5;
+    let reach = 3.3;
     for (wavelength, pen) in [(DISPERSION_LINE_B, WARM), (DISPERSION_LINE_D, DIM), (DISPERSION_LINE_G, SECOND)] {
         let Through { exit, direction, .. } = through(wavelength);
         fan(&mut scene, &view, &[entry, exit, exit + reach * section(direction)], pen);
@@ -88,18 +90,15 @@ fn draw() -> Scene {
             scene.dot(view.at(middle.exit + far * section(guessed)), 4.5, paint).named("guessed");
         }
     }
-    let [red, violet] = [DISPERSION_LINE_B, DISPERSION_LINE_G].map(|wavelength| {
+    let ends = [
+        (DISPERSION_LINE_B, Paint::Warm, -10.0, "red"),
+        (DISPERSION_LINE_D, Paint::Dim, 7.0, "yellow"),
+        (DISPERSION_LINE_G, Paint::Second, 14.0, "violet"),
+    ];
+    for (wavelength, paint, down, name) in ends {
         let Through { exit, direction, .. } = through(wavelength);
-        view.at(exit + reach * section(direction))
-    });
-    scene.note(red + at(12.0, -6.0), Anchor::Start, Paint::Warm, "red");
-    scene.note(violet + at(10.0, 12.0), Anchor::Start, Paint::Second, "violet");
-    scene.symbol(
-        view.at(middle.exit + 2.0 * section(middle.direction)) + at(30.0, -36.0),
-        Anchor::Middle,
-        Paint::Ink,
-        "'r_λ",
-    );
+        scene.note(view.at(exit + reach * section(direction)) + at(11.0, down), Anchor::Start, paint, name);
+    }
     scene.note(view.at(other) + at(-112.0, -4.0), Anchor::Middle, Paint::Dim, "diamond");
     scene
 }

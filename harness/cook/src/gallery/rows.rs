@@ -159,7 +159,7 @@ pub fn editor(module: &Module) -> Option<Markup> {
 }
 
 /// Returns the functions of a module that promise something, with their formulas.
-fn checked(module: &Module) -> impl Iterator<Item = (&FunctionDoc, &'static Formula)> {
+pub(super) fn checked(module: &Module) -> impl Iterator<Item = (&FunctionDoc, &'static Formula)> {
     let promising = module.functions.iter().filter(|doc| bounds(doc).is_some());
     promising.filter_map(|doc| {
         let formula = formulas::of_function(&doc.name).filter(|formula| formula.benign.is_none())?;

@@ -163,9 +163,13 @@ document.querySelector('#contents [aria-current]')?.scrollIntoView({ block: 'nea
 document.querySelector('.theme').addEventListener('click', () => {
   const shown = document.documentElement.dataset.theme ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
   const next = shown === 'dark' ? 'light' : 'dark';
-  document.documentElement.dataset.theme = next;
+  // The system's own is followed again.
+  const own = (next === 'dark') === matchMedia('(prefers-color-scheme: dark)').matches;
+  if (own) delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = next;
   try {
-    localStorage.setItem('lapidary-theme', next);
+    if (own) localStorage.removeItem('lapidary-theme');
+    else localStorage.setItem('lapidary-theme', next);
   } catch {
     // Kept for this page alone.
   }
@@ -209,30 +213,38 @@ const search = (() => {
     });
   }
 
-  /** How well an entry answers the words; 0 if one of them is not there. */
-  function score(entry, words) {
+  /** How well an entry answers the words; 0 if one of them is not there, or, of `some`, if none is. */
+  function score(entry, words, some) {
     const name = entry.name.toLowerCase();
     const all = `${name} ${entry.on} ${entry.text} ${entry.words ?? ''}`.toLowerCase();
     const weight = { page: 3, function: 2, rung: 2, picture: 0.5, heading: 1 }[entry.kind];
     let sum = 0;
     for (const word of words) {
-      if (!all.includes(word)) return 0;
+      if (!all.includes(word)) {
+        if (some) continue;
+        return 0;
+      }
       if (name === word) sum += 12;
       else if (name.startsWith(word)) sum += 6;
       else if (name.includes(word)) sum += 4;
       else sum += 1;
     }
-    return sum * weight - name.length / 1000;
+    return sum && sum * weight - name.length / 1000;
   }
 
   function show(text) {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);
     const list = dialog.querySelector('#found');
-    const scored = words.length ? entries.map((entry) => [score(entry, words), entry]).filter(([points]) => points > 0) : [];
+    const answers = (some) => entries.map((entry) => [score(entry, words, some), entry]).filter(([points]) => points > 0);
+    let scored = words.length ? answers(false) : [];
+    const partial = words.length > 1 && !scored.length;
+    if (partial) scored = answers(true);
     scored.sort((a, b) => b[0] - a[0]);
     list.replaceChildren(...scored.slice(0, MOST).map(([, entry], place) => option(entry, place)));
     const left = scored.length > MOST ? `${scored.length - MOST} more: a further word narrows it.` : '';
-    dialog.querySelector('.hint').textContent = words.length && !scored.length ? 'Nothing has all of these words.' : left;
+    const none = words.length === 1 ? 'Nothing has this word.' : 'Nothing has one of these words.';
+    const some = partial ? 'Nothing has all of these words; these have some. ' : '';
+    dialog.querySelector('.hint').textContent = words.length && !scored.length ? none : some + left;
     choose(0);
   }
 

@@ -3,8 +3,9 @@
 use super::super::{
     DrawnDiagram, Parts,
     highlight::{self, Language, Piece},
-    markdown,
+    markdown::{self, Heading},
     mirror::{self, Coloured},
+    rows,
     templates::{self, Markup},
     text::{self, Span, prose},
 };
@@ -22,6 +23,8 @@ struct Function<'a> {
     tags: Vec<(&'static str, Vec<Span>)>,
     bounds: Vec<(&'static str, Vec<Vec<Word>>)>,
     pair: Option<Coloured<'a>>,
+    /// Whether the page's editor checks it.
+    checked: bool,
 }
 
 /// A word of a bound; a small number is a power of ten.
@@ -40,6 +43,7 @@ struct Values<'a> {
     equation: Markup,
     introduction: Markup,
     rest: Markup,
+    headings: Vec<&'a Heading>,
     lines: usize,
     naive_lines: usize,
     wgsl: Vec<Piece<'a>>,
@@ -72,6 +76,7 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
         ],
         bounds: bounds(&function.accuracy),
         pair: pairs.iter().find(|pair| pair.name == function.name).map(mirror::Pair::coloured),
+        checked: rows::checked(module).any(|(doc, _)| doc.name == function.name),
     });
     let values = Values {
         name: module.name,
@@ -81,6 +86,7 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
         equation: doc.equation,
         introduction: doc.introduction,
         rest: doc.rest,
+        headings: doc.headings.iter().filter(|heading| heading.level == 2).collect(),
         lines: module.source.lines().count(),
         naive_lines: module.naive.lines().count(),
         wgsl: highlight::pieces(module.source, Language::Wgsl),

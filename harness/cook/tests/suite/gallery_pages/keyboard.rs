@@ -100,6 +100,10 @@ fn a_search_without_a_find_says_so_and_closes() {
     page.type_text("zzqxj").expect("typed");
     page.wait_for("/no(thing|ne)?\\b/i.test(document.querySelector('dialog[open], [role=dialog]').textContent)", SOON)
         .expect("it says that there is nothing");
+    // Where a page has some of the words, it is shown.
+    page.type_text(" refraction").expect("typed");
+    let some = "document.querySelectorAll('#found > li').length > 0 && document.querySelector('.search .hint').textContent.includes('some')";
+    page.wait_for(some, SOON).expect("what has some of the words");
     // The first empties the field, as Chromium's fields for searching do.
     page.press("Escape").expect("pressed");
     page.press("Escape").expect("pressed");
