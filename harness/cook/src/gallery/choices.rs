@@ -1,11 +1,12 @@
-//! The rungs that the qualities choose, as the planner has them, with their figures on two devices.
+//! The rungs that the qualities choose, as the planner has them, with their figures on two devices, and what holds 60
+//! frames a second on the one GPU that was measured.
 
 use super::ladder::{KINDS, Kind};
-use crate::cost::{Report, Table};
-use lapidary_plan::Quality;
-use lapidary_plan::ladder::Ladder;
+use super::templates;
+use crate::cost::Report;
+use lapidary_plan::ladder::{Ladder, SAME_TIME, Step};
+use lapidary_plan::{Geometry, Quality, Rung, Technique};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// The reports of a GPU, by the ladder's report.
 const GPU: [(&str, &str); 4] = [
@@ -15,82 +16,350 @@ const GPU: [(&str, &str); 4] = [
     ("translucent", include_str!("../../../../docs/measurements/nvidia_h200/translucent.json")),
 ];
 
-/// The rung of a quality.
+/// The device of the committed ladders.
+const CPU: &str = "lavapipe on 2 CPU cores";
+
+/// What a rung is for that is better than that of `fast` on the GPU.
+const ON_A_GPU: &str = "fast, on a GPU";
+
+/// Milliseconds of a frame, of which 60 are shown in a second.
+const SIXTIETH: f64 = 1000.0 / 60.0;
+
+/// What the errors of a measure are, in words.
+const GLOSSES: [(&str, &str); 3] = [
+    ("FLIP", "the visible difference from the spectral reference, from 0 to 1"),
+    ("distance from walks", "the difference of linear radiance from random walks, as a share of theirs"),
+    ("nats of error", "the error of the optical depth along the path; one nat is a factor of e in the light"),
+];
+
+/// A rung, and the qualities that choose it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Choice {
     /// Name of the ladder.
     pub ladder: &'static str,
     /// What the ladder is of.
     pub title: &'static str,
-    /// `fast`, `good` or `best`.
-    pub quality: &'static str,
+    /// The qualities, the default's among them: those that choose the same rung are one choice.
+    pub qualities: Vec<For>,
+    /// Whether it is what one gets without a choice.
+    pub is_default: bool,
     /// The rung.
     pub rung: String,
     /// What the error is.
     pub measure: &'static str,
+    /// The same in words.
+    pub gloss: &'static str,
     /// The mean error over the ladder's views.
     pub error: String,
     /// Mean milliseconds of the views on lavapipe.
     pub ms: String,
-    /// The same on a GPU; of a stone, a frame of 1920 by 1080 pixels that it fills.
-    pub gpu: String,
+    /// Milliseconds on the GPU; `None` if the rung was not measured there.
+    pub gpu: Option<String>,
+    /// What was measured there instead: rungs of the same search with as many hits, or with the same colours.
+    pub relatives: Vec<Timed>,
     /// Times the time of `fast`.
     pub times: String,
 }
 
+/// What a rung is for.
+#[derive(Clone, Debug, Serialize)]
+pub struct For {
+    /// A quality, or where a rung is better than its quality's.
+    pub name: &'static str,
+    /// Whether it is the quality without a choice.
+    pub is_default: bool,
+}
+
+/// A rung with its time.
+#[derive(Clone, Debug, Serialize)]
+pub struct Timed {
+    /// The rung.
+    pub rung: String,
+    /// Milliseconds.
+    pub ms: String,
+}
+
+/// What a ladder's figures are of.
+#[derive(Clone, Debug, Serialize)]
+pub struct Heading {
+    /// What the ladder is of.
+    pub title: &'static str,
+    /// What the errors are.
+    pub measure: &'static str,
+    /// The same in words.
+    pub gloss: &'static str,
+    /// The views over which errors are averaged.
+    pub views: Vec<String>,
+    /// The GPU.
+    pub gpu: String,
+    /// The size of the pictures that it drew.
+    pub gpu_size: String,
+    /// The other device.
+    pub cpu: &'static str,
+    /// The size of its pictures.
+    pub cpu_size: String,
+}
+
+/// A rung that may hold 60 frames a second.
+#[derive(Clone, Debug, Serialize)]
+struct Held {
+    rung: String,
+    error: String,
+    ms: String,
+    any_shape: bool,
+    holds: bool,
+}
+
+/// A ladder's choices, for the page.
+#[derive(Serialize)]
+struct Group {
+    heading: Heading,
+    choices: Vec<Choice>,
+}
+
+/// A ladder's committed report of the GPU.
+struct OnGpu {
+    report: Report,
+    ladder: Option<Ladder>,
+}
+
+impl OnGpu {
+    fn of(kind: &Kind) -> Self {
+        let record = GPU.iter().find(|(report, _)| *report == kind.report).map_or("", |(_, record)| record);
+        let ladder = Ladder::of_record(kind.technique, record).ok();
+        Self { report: serde_json::from_str(record).unwrap_or_default(), ladder }
+    }
+
+    /// Returns the GPU's name, without its driver.
+    fn name(&self) -> String {
+        self.report.adapter.split(" (").next().unwrap_or_default().to_owned()
+    }
+
+    fn steps(&self) -> &[Step] {
+        self.ladder.as_ref().map_or(&[], |ladder| &ladder.steps)
+    }
+
+    /// Returns the milliseconds of a rung; those of a stone are of a whole frame that it fills.
+    fn ms(&self, kind: &Kind, rung: &str) -> Option<f64> {
+        if kind.report == "gem" {
+            return self.report.ms(rung, "filled", "time");
+        }
+        self.steps().iter().find(|step| step.rung == rung).map(|step| step.ms)
+    }
+
+    /// Returns the measured rungs that differ from this one in their hits or in their colours alone.
+    fn relatives(&self, kind: &Kind, rung: Rung) -> Vec<Timed> {
+        let is_near = |other: &str| match (rung, other.parse()) {
+            (
+                Rung::Inside { geometry, hits, spectrum },
+                Ok(Rung::Inside { geometry: other_geometry, hits: other_hits, spectrum: other_spectrum }),
+            ) => geometry == other_geometry && (hits == other_hits || spectrum == other_spectrum),
+            _ => false,
+        };
+        let near = self.steps().iter().filter(|step| is_near(&step.rung));
+        near.filter_map(|step| Some(Timed { rung: step.rung.clone(), ms: shown(self.ms(kind, &step.rung)?) })).collect()
+    }
+}
+
 /// Returns the choices of every ladder.
 pub fn all() -> Vec<Choice> {
-    let of_kind = |kind: &'static Kind| {
-        let on_gpu = times_on_gpu(kind);
-        Quality::ALL.into_iter().filter_map(move |quality| choice(kind, quality, &on_gpu))
-    };
     KINDS.iter().flat_map(of_kind).collect()
 }
 
-/// Returns the milliseconds that rungs of a ladder take on the GPU; those of a stone are of a frame of 1920 by 1080
-/// pixels that it fills.
-fn times_on_gpu(kind: &Kind) -> BTreeMap<String, f64> {
-    let Some((_, record)) = GPU.iter().find(|(report, _)| *report == kind.report) else { return BTreeMap::new() };
-    if kind.report != "gem" {
-        let steps = Ladder::of_record(kind.technique, record).map(|ladder| ladder.steps).unwrap_or_default();
-        return steps.into_iter().map(|step| (step.rung, step.ms)).collect();
-    }
-    let report: Report = serde_json::from_str(record).unwrap_or_default();
-    let filled = report.rows.into_iter().filter(|row| row.view == "filled" && row.measure == "time");
-    filled.filter_map(|row| Some((row.rung, row.ms?))).collect()
-}
-
-fn choice(kind: &'static Kind, quality: Quality, on_gpu: &BTreeMap<String, f64>) -> Option<Choice> {
-    let ladder = kind.technique.ladder()?;
-    let rung = kind.technique.rung(quality).to_string();
-    let step = ladder.step(&rung)?;
-    let fast = ladder.step(&kind.technique.rung(Quality::Fast).to_string())?;
-    Some(Choice {
-        ladder: kind.name,
+/// Returns what the figures of a ladder are of.
+pub fn heading(kind: &Kind) -> Heading {
+    let on_gpu = OnGpu::of(kind);
+    let (side, views) = kind.measured(&on_gpu.report);
+    let size = format!("{side} × {side}");
+    let measure = kind.technique.ladder().map_or("", |ladder| ladder.measure);
+    Heading {
         title: kind.title,
-        quality: quality.name(),
-        measure: ladder.measure,
-        error: format!("{:.2}", step.error),
-        ms: format!("{:.1}", step.ms),
-        gpu: on_gpu.get(&rung).map_or_else(|| "not measured".to_owned(), |ms| format!("{ms:.1}")),
-        times: format!("{:.1}", step.ms / fast.ms),
-        rung,
-    })
+        measure,
+        gloss: gloss(measure),
+        views: views.iter().map(|view| (*view).to_owned()).collect(),
+        gpu: on_gpu.name(),
+        gpu_size: if kind.report == "gem" { format!("{}, filled", on_gpu.report.size()) } else { size.clone() },
+        cpu: CPU,
+        cpu_size: size,
+    }
 }
 
-/// What the times are of.
-pub const NOTE: &str = "The GPU is an NVIDIA H200: stones fill a frame of 1920 × 1080, the others are 512 × 512, one sample a pixel. \
-    The CPU runs lavapipe, with stones of 256 × 256 pixels. Errors and those times are means over each ladder's views.";
+/// Returns a ladder's choices: a rung for each quality, equal ones together, and what is better on the GPU.
+fn of_kind(kind: &'static Kind) -> Vec<Choice> {
+    let Some(ladder) = kind.technique.ladder() else { return Vec::new() };
+    let on_gpu = OnGpu::of(kind);
+    let mut chosen: Vec<(Rung, Vec<Quality>)> = Vec::new();
+    for quality in Quality::ALL {
+        let rung = kind.technique.rung(quality);
+        match chosen.iter_mut().find(|(other, _)| *other == rung) {
+            Some((_, qualities)) => qualities.push(quality),
+            None => chosen.push((rung, vec![quality])),
+        }
+    }
+    let fast = kind.technique.rung(Quality::Fast);
+    let choice = |rung: Rung, qualities: Vec<For>| {
+        let name = rung.to_string();
+        let step = ladder.step(&name)?;
+        let gpu = on_gpu.ms(kind, &name).map(shown);
+        Some(Choice {
+            ladder: kind.name,
+            title: kind.title,
+            is_default: qualities.iter().any(|of| of.is_default),
+            qualities,
+            measure: ladder.measure,
+            gloss: gloss(ladder.measure),
+            error: format!("{:.2}", step.error),
+            ms: shown(step.ms),
+            relatives: if gpu.is_none() { on_gpu.relatives(kind, rung) } else { Vec::new() },
+            gpu,
+            times: format!("{:.1}", step.ms / ladder.step(&fast.to_string())?.ms),
+            rung: name,
+        })
+    };
+    let mut choices = Vec::new();
+    for (rung, qualities) in &chosen {
+        let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
+        choices.extend(choice(*rung, qualities.iter().map(of).collect()));
+        if qualities.contains(&Quality::Fast) {
+            let better = better_on_gpu(kind, &on_gpu, *rung).filter(|better| chosen.iter().all(|(of, _)| of != better));
+            choices.extend(better.and_then(|better| choice(better, vec![For { name: ON_A_GPU, is_default: false }])));
+        }
+    }
+    choices
+}
 
-/// Returns the choices as the table of `docs/choosing.md`.
-pub fn table() -> Table {
-    Table::of("choices", "", all())
-        .column("bodies", |choice| choice.title.to_owned())
-        .column("`--quality`", |choice| choice.quality.to_owned())
-        .column("rung", |choice| format!("`{}`", choice.rung))
-        .column("error", |choice| format!("{} {}", choice.measure, choice.error))
-        .column("ms, a GPU", |choice| choice.gpu.clone())
-        .column("ms, two CPU cores", |choice| choice.ms.clone())
-        .column("× fast", |choice| choice.times.clone())
-        .note(NOTE)
+/// Returns the rung nearest to the truth among those that the GPU draws faster than this one; `None` if this one is.
+fn better_on_gpu(kind: &Kind, on_gpu: &OnGpu, rung: Rung) -> Option<Rung> {
+    let (name, ladder) = (rung.to_string(), kind.technique.ladder()?);
+    let (most, error) = (on_gpu.ms(kind, &name)?, ladder.step(&name)?.error);
+    let nearer = |other: &&Step| {
+        let is_faster = on_gpu.ms(kind, &other.rung).is_some_and(|ms| (1.0 + SAME_TIME) * ms < most);
+        is_faster && other.error < error
+    };
+    let nearest = ladder.steps.iter().filter(nearer).min_by(|a, b| a.error.total_cmp(&b.error))?;
+    nearest.rung.parse().ok()
+}
+
+/// Returns the rungs by map and by hierarchy whose frame the GPU drew, by time, with their errors on the same stones.
+fn held(kind: &Kind, on_gpu: &OnGpu) -> Vec<Held> {
+    let geometry = |rung: &str| match rung.parse() {
+        Ok(Rung::Inside { geometry, .. }) => Some(geometry),
+        _ => None,
+    };
+    let is_shown = |step: &&Step| matches!(geometry(&step.rung), Some(Geometry::Walk | Geometry::Bvh));
+    let timed = |step: &'_ Step| Some((on_gpu.ms(kind, &step.rung)?, step.clone()));
+    let mut timed: Vec<(f64, Step)> = on_gpu.steps().iter().filter(is_shown).filter_map(timed).collect();
+    timed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let held = |(ms, step): (f64, Step)| Held {
+        any_shape: geometry(&step.rung) == Some(Geometry::Bvh),
+        error: format!("{:.2}", step.error),
+        ms: shown(ms),
+        holds: ms <= SIXTIETH,
+        rung: step.rung,
+    };
+    timed.into_iter().map(held).collect()
+}
+
+fn gloss(measure: &str) -> &'static str {
+    GLOSSES.iter().find(|(of, _)| *of == measure).map_or("", |(_, gloss)| gloss)
+}
+
+fn shown(ms: f64) -> String {
+    format!("{ms:.1}")
+}
+
+/// Returns the generated part of `docs/choosing.md`.
+pub fn page() -> String {
+    #[derive(Serialize)]
+    struct Values {
+        groups: Vec<Group>,
+        adapter: String,
+        size: String,
+        least: String,
+        held: Vec<Held>,
+        nearest: Option<Held>,
+        unmeasured: Vec<Choice>,
+        /// The size and the longest time of the scattering bodies' choices.
+        small: String,
+        longest: String,
+    }
+    let groups: Vec<Group> =
+        KINDS.iter().map(|kind| Group { heading: heading(kind), choices: of_kind(kind) }).collect();
+    let stones = KINDS.iter().find(|kind| kind.technique == Technique::Convex).unwrap_or(&KINDS[0]);
+    let on_gpu = OnGpu::of(stones);
+    let held = held(stones, &on_gpu);
+    let scattering = KINDS.iter().filter(|kind| kind.report != "gem");
+    let times = |kind: &'static Kind| {
+        let on_gpu = OnGpu::of(kind);
+        of_kind(kind).into_iter().filter_map(move |choice| on_gpu.ms(kind, &choice.rung))
+    };
+    let values = Values {
+        adapter: on_gpu.report.adapter.clone(),
+        size: on_gpu.report.size(),
+        least: shown(SIXTIETH),
+        nearest: held.iter().filter(|of| of.holds).min_by(|a, b| a.error.cmp(&b.error)).cloned(),
+        held,
+        small: scattering.clone().map(|kind| heading(kind).gpu_size).next().unwrap_or_default(),
+        longest: shown(scattering.flat_map(times).fold(0.0, f64::max)),
+        unmeasured: all().into_iter().filter(|choice| choice.gpu.is_none()).collect(),
+        groups,
+    };
+    templates::render("choices.md", values).0 + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn each_quality_of_each_ladder_is_in_one_choice_and_each_rung_too() {
+        let all = all();
+        for kind in &KINDS {
+            let of: Vec<&Choice> = all.iter().filter(|choice| choice.ladder == kind.name).collect();
+            let rungs: BTreeSet<&str> = of.iter().map(|choice| choice.rung.as_str()).collect();
+            assert_eq!(rungs.len(), of.len(), "{}: a rung stands there twice", kind.name);
+            for quality in Quality::ALL {
+                let rung = kind.technique.rung(quality).to_string();
+                let choice = of.iter().find(|choice| choice.rung == rung).expect("the quality's rung");
+                assert!(choice.qualities.iter().any(|of| of.name == quality.name()), "{choice:?}");
+                assert!(quality != Quality::default() || choice.is_default, "{choice:?}");
+            }
+            assert_eq!(of.iter().filter(|choice| choice.is_default).count(), 1, "{}", kind.name);
+        }
+    }
+
+    #[test]
+    fn what_is_better_on_the_gpu_stands_below_fast() {
+        let all = all();
+        let better: Vec<&str> = all
+            .iter()
+            .filter(|choice| choice.qualities[0].name == ON_A_GPU)
+            .map(|choice| choice.rung.as_str())
+            .collect();
+        assert_eq!(better, ["diffusion-32"]);
+    }
+
+    #[test]
+    fn both_devices_measured_the_same_views_at_the_same_size() {
+        for kind in &KINDS {
+            let (on_gpu, report) = (OnGpu::of(kind).report, kind.report().expect("committed"));
+            assert_eq!(kind.measured(&on_gpu), kind.measured(&report), "{}", kind.name);
+            let heading = heading(kind);
+            assert!(!heading.gloss.is_empty() && !heading.gpu.is_empty() && !heading.views.is_empty(), "{heading:?}");
+        }
+    }
+
+    #[test]
+    fn a_default_that_the_gpu_did_not_draw_names_what_it_drew() {
+        for choice in all().iter().filter(|choice| choice.gpu.is_none()) {
+            assert!(!choice.relatives.is_empty(), "{choice:?}");
+        }
+        let stones = Kind::named("convex").expect("there");
+        let on_gpu = OnGpu::of(stones);
+        let held = held(stones, &on_gpu);
+        assert!(held.iter().any(|of| of.holds) && held.iter().any(|of| !of.holds), "{held:?}");
+        // The rows are in order of time, so that those which hold come first.
+        assert!(held.is_sorted_by_key(|of| !of.holds), "{held:?}");
+    }
 }

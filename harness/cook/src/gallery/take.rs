@@ -1,7 +1,7 @@
 //! The shader of each rung that a quality chooses, to paste: what `cook copy` writes for the values that the renderer
-//! gives it.
+//! gives it, below a line that names the rung and the command.
 
-use super::choices::Choice;
+use super::choices::{self, Choice, Heading};
 use super::ladder::Kind;
 use crate::cookbook::marks;
 use lapidary_plan::Rung;
@@ -14,7 +14,7 @@ use serde::Serialize;
 /// A shader to take.
 #[derive(Clone, Debug, Serialize)]
 pub struct Take {
-    /// The ladder, quality and rung.
+    /// The ladder, rung and qualities.
     pub choice: Choice,
     /// The recipe that draws the rung.
     pub recipe: &'static str,
@@ -27,6 +27,28 @@ pub struct Take {
     pub text: String,
     /// Its number of lines.
     pub lines: usize,
+}
+
+/// The shaders of a ladder, under what its figures are of.
+#[derive(Debug, Serialize)]
+pub struct Group<'a> {
+    heading: Heading,
+    takes: Vec<&'a Take>,
+}
+
+/// Returns the shaders by ladder, in order.
+pub fn groups<'a>(takes: impl IntoIterator<Item = &'a Take>) -> Vec<Group<'a>> {
+    let mut groups: Vec<Group<'a>> = Vec::new();
+    for take in takes {
+        match groups.iter_mut().find(|group| group.takes[0].choice.ladder == take.choice.ladder) {
+            Some(group) => group.takes.push(take),
+            None => {
+                let Some(kind) = Kind::named(take.choice.ladder) else { continue };
+                groups.push(Group { heading: choices::heading(kind), takes: vec![take] });
+            }
+        }
+    }
+    groups
 }
 
 /// Why a choice has no shader to take.
@@ -81,10 +103,12 @@ pub fn take(choice: &Choice) -> Result<Take, TakeError> {
     let drawn = frame.pipelines.iter().find(|pipeline| pipeline.shader.recipe() == recipe.name);
     let drawn = drawn.ok_or_else(|| fault("its frame does not run it".to_owned()))?;
     let Fitted { text, command } = fitted(recipe, drawn.shader.overrides()).map_err(fault)?;
+    // The text itself begins with a module's header, which is the same for many rungs.
+    let text = ["// The rung ", &choice.rung, ", by ", &command, "\n\n", &text].concat();
     Ok(Take {
         recipe: recipe.name,
         command: [&command, " --out ", recipe.name, ".wgsl"].concat(),
-        source: ["source/rung_", choice.ladder, "_", choice.quality].concat(),
+        source: ["source/rung_", choice.ladder, "_", &choice.rung.replace('+', "_")].concat(),
         lines: text.lines().count(),
         text,
         choice: choice.clone(),
@@ -122,11 +146,14 @@ mod tests {
     fn a_rung_is_taken_with_its_values() {
         let all = choices::all();
         let take = |quality: &str| {
-            let choice = all.iter().find(|choice| choice.ladder == "convex" && choice.quality == quality);
+            let choice = all.iter().find(|choice| choice.ladder == "convex" && choice.qualities[0].name == quality);
             take(choice.expect("there")).expect("taken")
         };
         let good = take("good");
         assert_eq!(good.recipe, "gem_walk");
+        let command = good.command.strip_suffix(" --out gem_walk.wgsl").expect("a file");
+        assert_eq!(good.text.lines().next(), Some(["// The rung walk-8+tracker, by ", command].concat().as_str()));
+        assert_eq!(good.source, "source/rung_convex_walk-8_tracker");
         assert!(good.text.contains("const BOUNCES: u32 = 8u;"), "{}", good.command);
         assert!(good.text.contains("override EFFECT_DISPERSION: bool = true;"), "{}", good.command);
         assert!(good.command.contains("dispersion") && good.command.contains("BOUNCES=8"), "{}", good.command);

@@ -29,6 +29,8 @@ pub struct Technique {
     pub solves: bool,
     /// The scene of its live page.
     pub live: &'static str,
+    /// Name of the technique to take instead, and when: the beginning of a sentence.
+    pub beside: Option<(&'static str, &'static str)>,
 }
 
 /// All techniques, in the order of the gallery.
@@ -62,6 +64,7 @@ pub const TECHNIQUES: [Technique; 4] = [
         function: "refraction_refract",
         solves: false,
         live: "brilliant",
+        beside: None,
     },
     Technique {
         name: "curvature",
@@ -75,9 +78,13 @@ pub const TECHNIQUES: [Technique; 4] = [
         guides: &["cdrf_ladder"],
         modules: &["cdrf", "curvature", "half_space", "microfacet", "texture_diffusion", "random_walk"],
         recipes: &["cdrf_shading", "cdrf_table", "texture_irradiance", "blur_texture"],
-        function: "cdrf_cheap",
+        function: "cdrf_drift",
         solves: false,
         live: "skin_ring",
+        beside: Some((
+            "diffusion",
+            "This technique draws bodies that let little light through. For jade, marble, wax or ears with the light behind them,",
+        )),
     },
     Technique {
         name: "optical-path",
@@ -102,6 +109,7 @@ pub const TECHNIQUES: [Technique; 4] = [
         function: "optical_path_godunov",
         solves: true,
         live: "bunny",
+        beside: None,
     },
     Technique {
         name: "diffusion",
@@ -125,6 +133,10 @@ pub const TECHNIQUES: [Technique; 4] = [
         function: "diffusion_local",
         solves: true,
         live: "dragon",
+        beside: Some((
+            "curvature",
+            "This technique draws bodies with the light behind them. For skin, wax or jade that lets little light through,",
+        )),
     },
 ];
 
@@ -143,6 +155,8 @@ mod tests {
             let function =
                 |name: &&str| cookbook::module(name).is_some_and(|of| of.function(technique.function).is_some());
             assert!(technique.modules.iter().any(function), "{}", technique.function);
+            let beside = technique.beside.iter().all(|(name, _)| TECHNIQUES.iter().any(|other| other.name == *name));
+            assert!(beside, "{}: another technique", technique.name);
         }
     }
 

@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 /// Every template: a line each.
 const TEXTS: &[(&str, &str)] = &[
     ("base.html", include_str!("templates/base.html")),
+    ("choices.md", include_str!("templates/choices.md")),
     ("compare.html", include_str!("templates/compare.html")),
     ("editor.html", include_str!("templates/editor.html")),
     ("figure.html", include_str!("templates/figure.html")),

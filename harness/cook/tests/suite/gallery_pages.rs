@@ -13,8 +13,7 @@ use browser::opened;
 use html::Piece;
 use lapidary_browser::Page;
 use lapidary_cook::cookbook;
-use lapidary_cook::gallery::ladder::KINDS;
-use lapidary_plan::Quality;
+use lapidary_cook::gallery::choices;
 use site::{Site, SitePage, decoded, files, resolved, site};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -352,7 +351,13 @@ fn loaded_sources_compile() {
         assert!(text.contains("fn "), "{name}: {text}");
     }
     let rungs = names.iter().filter(|name| name.starts_with(OF_RUNG)).count();
-    assert_eq!(rungs, KINDS.len() * Quality::ALL.len(), "a shader for each quality of each ladder: {names:?}");
+    assert_eq!(rungs, choices::all().len(), "a shader for each rung to choose of each ladder: {names:?}");
+    for choice in choices::all() {
+        let named = |text: &str| text.starts_with(&format!("// The rung {}, by ./cook copy ", choice.rung));
+        let of_ladder = format!("{OF_RUNG}{}_", choice.ladder);
+        let is_there = names.iter().filter(|name| name.starts_with(&of_ladder)).any(|name| named(&source(site, name)));
+        assert!(is_there, "{}: no shader that names it", choice.rung);
+    }
     let least = cookbook::modules().len() + lapidary_wgsl::RECIPES.len() + rungs;
     assert!(names.len() >= least, "{} sources, of {least} modules, recipes and rungs", names.len());
 }
@@ -388,6 +393,33 @@ fn pages_are_quiet_and_fit_their_window() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// On a phone the menu begins below the bar, ends in the window, and can be scrolled to its last page.
+#[test]
+fn a_phones_menu_reaches_every_page() {
+    let Some(mut page) = opened("modules/refraction.html") else { return };
+    let (width, height, is_phone) = WINDOWS[0];
+    page.set_viewport(width, height, is_phone).expect("set");
+    page.click("button.menu").expect("clicked");
+    let menu = page
+        .run(
+            "const contents = document.querySelector('#contents');
+            const box = contents.getBoundingClientRect();
+            for (const fold of contents.querySelectorAll('details')) fold.open = true;
+            const all = [...contents.querySelectorAll('a')];
+            all.at(-1).scrollIntoView({ block: 'nearest', behavior: 'instant' });
+            const last = all.at(-1).getBoundingClientRect();
+            const seen = document.elementFromPoint(last.left + 5, last.top + last.height / 2);
+            return {
+              below: box.top >= document.querySelector('.bar').getBoundingClientRect().bottom - 1,
+              within: box.bottom <= innerHeight + 1,
+              long: contents.scrollHeight > contents.clientHeight,
+              last: seen === all.at(-1),
+            };",
+        )
+        .expect("the menu");
+    assert_eq!(menu, serde_json::json!({ "below": true, "within": true, "long": true, "last": true }));
 }
 
 /// Opens a page of the site, and returns what is wrong with it.

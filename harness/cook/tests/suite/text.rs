@@ -63,9 +63,9 @@ fn the_pictures_are_listed_with_their_captions() {
 fn the_guide_to_choosing_has_the_planners_rungs() {
     let path = lapidary_cook::repository::place().join("docs/choosing.md");
     let page = std::fs::read_to_string(path).expect("the page");
-    let table = lapidary_cook::gallery::choices::table().markdown();
-    let filled = page::with_table(&page, page::CHOICES, &table).expect("sound marks");
-    assert!(filled.contains(&table), "choosing.md has no place for the table `{}`", page::CHOICES);
+    let part = lapidary_cook::gallery::choices::page();
+    let filled = page::with_table(&page, page::CHOICES, &part).expect("sound marks");
+    assert!(filled.contains(&part), "choosing.md has no place for the tables `{}`", page::CHOICES);
     generated::keep("docs/choosing.md", &filled);
 }
 

@@ -250,12 +250,15 @@
       this.figure.classList.toggle('is-difference', checked);
       this.figure.querySelector('.compare-times').classList.toggle('is-on', checked);
       this.figure.style.setProperty('--gain', this.gain.value);
+      // What is shown has 8 bits: at most 255 steps, which the gain reaches sooner.
+      const white = Math.ceil(255 / this.gain.value);
       const gain = this.gain.value === '1' ? 'as it is' : `${this.gain.value} times as bright`;
       const of = exact
-        ? 'of both at the reference’s 256 × 256 pixels, without loss.'
-        : 'of the pictures to look at, whose compression leaves a few steps of 255.';
+        ? 'from both at the reference’s 256 × 256 pixels, without loss.'
+        : 'from the pictures to look at, whose compression leaves a few steps of 255.';
       this.figure.querySelector('.compare-says').textContent = checked
-        ? `The absolute difference of sRGB values, ${gain}: black is equal; ${of}`
+        ? `Difference of red, green and blue, each by itself: absolute, of sRGB values as shown (not of linear light), ${gain}. ` +
+          `Black: equal. A colour: these channels differ. Full brightness: by ${white} steps of 255 or more. Computed ${of}`
         : '';
     }
   }

@@ -21,7 +21,42 @@
 
   const code = (text) => made('code', '', text);
 
+  /** A module's declarations by name, without comments and with single spaces. */
+  function declared(module) {
+    const bare = module.replace(/\/\*[\s\S]*?\*\/|\/\/.*/g, ' ').replace(/\s+/g, ' ');
+    const found = new Map();
+    let [depth, from] = [0, 0];
+    for (let at = 0; at < bare.length; at++) {
+      if (bare[at] === '{') depth += 1;
+      if (bare[at] === '}') depth = Math.max(0, depth - 1);
+      if (depth > 0 || !'};'.includes(bare[at])) continue;
+      const text = bare.slice(from, at + 1).trim();
+      const name = /\b(?:fn|const|override|struct|alias|var(?: ?<[^>]*>)?) (\w+)/.exec(text)?.[1];
+      if (name) found.set(name, text);
+      from = at + 1;
+    }
+    return found;
+  }
+
+  /** Names of a declaration and of all that it needs. */
+  function needed(name, all, seen = new Set()) {
+    if (!all.has(name) || seen.has(name)) return seen;
+    seen.add(name);
+    for (const [word] of all.get(name).matchAll(/\w+/g)) needed(word, all, seen);
+    return seen;
+  }
+
+  /** A declaration's text with all that it needs. */
+  const whole = (name, all) => [...needed(name, all)].sort().map((of) => all.get(of)).join('\n');
+
+  /** Names in a row: `a, b and c`. */
+  const row = (names) => names.join(', ').replace(/, (?=[^,]*$)/, ' and ');
+
   class Editor {
+    /** What held in a check: the text of each function, with all that it needs. */
+    held = new Map();
+
+
     constructor(root) {
       this.root = root;
       this.module = root.dataset.module;
@@ -143,7 +178,7 @@
       try {
         const found = await gallery.check(name, text);
         // The visitor may have turned to another function meanwhile.
-        if (name === this.name) this.report(name, found);
+        if (name === this.name) this.report(name, text, found);
       } catch (error) {
         this.fail(error);
       } finally {
@@ -156,13 +191,52 @@
       this.tell(made('p', 'check-fails', error.message || String(error)));
     }
 
-    /** Shows a result, whose first line is also said. */
+    /** Shows a result, whose leading paragraphs are also said. */
     tell(...parts) {
       this.result.replaceChildren(...parts);
-      gallery.say(parts[0].textContent);
+      const others = parts.findIndex((part) => part.tagName !== 'P');
+      gallery.say(parts.slice(0, others < 0 ? undefined : others).map((part) => part.dataset.said ?? part.textContent).join(' '));
+      // By Ctrl+Enter it may come below the window.
+      this.result.scrollIntoView({ block: 'nearest' });
     }
 
-    report(name, { rows, held, worst, messages, adapter }) {
+    /** What is changed and did not hold in a check of its own, as paragraphs: a check runs one function of the text. */
+    unchecked(name, text) {
+      const [now, before] = [text, this.original].map(declared);
+      const offered = Array.from(this.function.options, ({ value }) => value);
+      const open = offered.filter((of) => of !== name && whole(of, now) !== whole(of, before) && this.held.get(of) !== whole(of, now));
+      const [direct, through] = [true, false].map((is) => open.filter((of) => (now.get(of) !== before.get(of)) === is));
+      const reached = new Set(offered.flatMap((of) => [...needed(of, now), ...needed(of, before)]));
+      const none = [...before.keys()].filter((of) => !reached.has(of) && now.get(of) !== before.get(of));
+      const said = (names, one, more) => (names.length > 0 ? [this.left(names, `${row(names)} ${names.length > 1 ? more : one}`)] : []);
+      const found = [
+        ...said(direct, 'is changed too, but not checked: choose it to check it.', 'are changed too, but not checked: choose each to check it.'),
+        ...said(through, 'uses what is changed, and is not checked: choose it to check it.', 'use what is changed, and are not checked: choose each to check it.'),
+      ];
+      if (none.length > 0) found.push(made('p', 'check-left', `${row(none)} ${none.length > 1 ? 'are' : 'is'} changed too, and no function that is checked here uses ${none.length > 1 ? 'them' : 'it'}.`));
+      return found;
+    }
+
+    /** A sentence about functions that are left, with a button that checks each. */
+    left(names, sentence) {
+      const paragraph = made('p', 'check-left', sentence);
+      paragraph.dataset.said = sentence;
+      for (const name of names) {
+        const go = made('button', 'check-line', `Check ${name}`);
+        go.type = 'button';
+        go.addEventListener('click', () => {
+          this.function.value = name;
+          this.turn();
+          // This button is gone by now.
+          this.run.focus({ preventScroll: true });
+          this.check();
+        });
+        paragraph.append(' ', go);
+      }
+      return paragraph;
+    }
+
+    report(name, text, { rows, held, worst, messages, adapter }) {
       const errors = messages.filter(({ type }) => type === 'error');
       this.number([...new Set(errors.map(({ line }) => line).filter(Boolean))]);
       const said = messages.length > 0 ? [this.listed(messages)] : [];
@@ -171,9 +245,17 @@
         return;
       }
       const all = held === rows;
-      const head = made('p', all ? 'check-holds' : 'check-fails');
-      head.append(`${all ? 'All' : held} ${all ? '' : 'of '}${rows} rows hold`, ` for ${name} on ${adapter}.`);
-      this.tell(head, ...said, this.worst(worst));
+      const now = whole(name, declared(text));
+      if (all) this.held.set(name, now);
+      const left = this.unchecked(name, text);
+      if (!all) {
+        const fails = `${rows - held} of ${rows} rows fail for ${name} on ${adapter}; ${held === 0 ? 'none holds' : `${held} ${held === 1 ? 'holds' : 'hold'}`}.`;
+        return this.tell(made('p', 'check-fails', fails), ...left, ...said, this.worst(worst));
+      }
+      const same = left.length > 0 && now === whole(name, declared(this.original)) ? ' It is as in the cookbook.' : '';
+      const holds = made('p', 'check-holds', `All ${rows} rows hold for ${name} on ${adapter}.${same}`);
+      // First what the rows say nothing about, so that it does not read as if all held.
+      this.tell(...left, holds, ...said, this.worst(worst));
     }
 
     /** The compiler's messages; each leads to its line. */

@@ -133,6 +133,13 @@ function reflectCommands() {
   const copying = live.sides.length > 0 ? pipelines().flatMap(({ copy }) => copy ?? []) : [];
   one('.live-copying').hidden = copying.length === 0;
   one('.live-copying code').textContent = copying.join('\n');
+  const drawing = live.sides.length > 0 ? pipelines().filter(({ copy }) => copy) : [];
+  const recipes = [...new Set(drawing.map(({ recipe }) => recipe))];
+  one('.live-recipes').replaceChildren(...recipes.flatMap((recipe) => {
+    const link = document.createElement('a');
+    [link.href, link.textContent] = [`${gallery.root}recipes/${recipe}.html`, recipe];
+    return [link, ', or '];
+  }));
 }
 
 /** Shows the state in the controls, the command and the address. */
@@ -140,10 +147,14 @@ function reflect() {
   const { manifest, state } = live;
   const rungs = [state.rung, state.other].map((name) => manifest.rungs[name]);
   for (const name of ['rung', 'other', 'wipe']) input(name).value = state[name];
-  one('[data-wipe]').hidden = !state.other;
-  seam.hidden = canvas.hidden || !state.other || state.other === state.rung;
+  // The row keeps its place, so that no control slides under a pointer.
+  const same = state.other === state.rung;
+  input('wipe').disabled = !state.other || same;
+  for (const option of input('other').options) option.disabled = option.value === state.rung;
+  seam.hidden = canvas.hidden || !state.other || same;
   seam.style.left = `${state.wipe}%`;
-  one('[data-wipe] output').textContent = `${state.wipe} %`;
+  const wiped = same ? 'same rung twice' : `${state.wipe} %`;
+  one('[data-wipe] output').textContent = state.other ? wiped : 'nothing beside';
   for (const box of all('[data-toggle]')) {
     box.checked = state.on[box.name];
     box.disabled = !rungs.some((rung) => rung?.toggles.includes(box.name));
@@ -164,7 +175,7 @@ function reflect() {
 
 // Drawing: never more than the device keeps up with.
 
-let [drawing, wanted] = [null, false];
+let [drawing, wanted, measuring] = [null, false, null];
 
 /** Draws, and once more if the state changed meanwhile. */
 async function drawn() {
@@ -183,7 +194,9 @@ function set(changes = {}) {
   // What was said is of what was shown.
   if (!note.classList.contains('failed')) tell('');
   wanted = true;
-  drawing ??= drawn()
+  // What is timed must stand until then.
+  drawing ??= Promise.resolve(measuring)
+    .then(drawn)
     .then(() => note.classList.contains('failed') && tell(''))
     .then(reflectCommands)
     .finally(() => (drawing = null));
@@ -264,14 +277,18 @@ async function start() {
 
 /** Runs of a frame whose median is its time, and runs before them, in which the device speeds up. */
 const [RUNS, WARM_UP] = [11, 5];
+/** A device that took this long in milliseconds is awake. */
+const AWAKE = 500;
 /** Browsers round a device's clock to tenths of milliseconds; shorter frames are timed by many, this long together. */
 const [SHORT, LONG_ENOUGH] = [2, 20];
 
 /** Milliseconds that a frame takes with all its passes. */
 async function timeOf(frame) {
   const done = () => live.device.queue.onSubmittedWorkDone();
-  for (let run = 0; run < WARM_UP; run++) frame.draw();
-  await done();
+  for (let run = 0, begin = performance.now(); run < WARM_UP && performance.now() - begin < AWAKE; run++) {
+    frame.draw();
+    await done();
+  }
   const one = await frame.time(RUNS);
   if (one >= SHORT) return one;
   const times = [];
@@ -346,25 +363,34 @@ async function readback() {
 }
 
 /** Measures, says how long a frame takes, and puts it into the ladder's plot. */
-async function measure() {
+async function timed() {
   const { manifest } = live;
-  await drawing;
+  await drawing?.catch(() => {});
   tell('Measuring …');
   const measured = await times();
+  const shown = [];
+  for (const { name, frame } of live.sides) shown.push({ rung: name, ms: await timeOf(frame) });
   const { side, samples } = manifest.timed;
-  const each = measured.map(({ rung, ms }) => `${rung}: ${Number(ms.toPrecision(2))} ms on your GPU`).join(', ');
-  const drawn = `${side} × ${side} pixels, ${samples === 1 ? 'one sample' : `${samples * samples} samples`}`;
-  // Where controls were moved, the picture is another one than what was timed.
-  const { on, steps } = live.start;
-  const isStart = ['on', 'steps'].every((of) => JSON.stringify(live.state[of]) === JSON.stringify({ on, steps }[of]));
-  const usual = isStart && !live.isTurned && !live.environment ? '' : ' Timed are the ladder’s frames, with all controls as at the start.';
-  one('.live-time').textContent = `${each}, for ${drawn}, on ${adapterName()}.${usual}`;
+  const each = (of) => of.map(({ rung, ms }) => `${rung}: ${Number(ms.toPrecision(2))} ms on your GPU`).join(', ');
+  const size = (width, height, samples) => `${width} × ${height} pixels, ${samples === 1 ? 'one sample' : `${samples * samples} samples`} each`;
+  const ladder = `The ladder’s frame (${size(side, side, samples)}, controls as at the start): ${each(measured)}.`;
+  // What was moved meanwhile is on screen next, and not what was timed.
+  const now = wanted ? '' : ` The picture on screen (${size(canvas.width, canvas.height, manifest.samples)}, controls as they are), all its passes: ${each(shown)}.`;
+  one('.live-time').textContent = `${ladder}${now} Measured on ${adapterName()}.`;
   tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {
     for (const plot of document.querySelectorAll(`svg.plot[data-ladder="${manifest.ladder}"]`)) {
       gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
     }
   }
+}
+
+/** Measures, once at a time. */
+function measure() {
+  measuring ??= timed()
+    .catch(({ message }) => tell(message, true))
+    .finally(() => (measuring = null));
+  return measuring;
 }
 
 /** Lights the scene by a picture: its width, height and texels. */
@@ -390,20 +416,17 @@ async function lightBy(file) {
   }
 }
 
-/** Copies a text, and says so on the button that was pressed. */
-async function copied(text, what, button) {
-  const label = (button.dataset.label ??= button.textContent);
-  const done = await gallery.copy(text);
-  tell(done ? `${what} is in the clipboard.` : `${what} could not be copied: this browser gives no way to it here.`);
+/** Copies the shader, and says so on the button that was pressed. */
+async function copyShader(button) {
+  const done = await gallery.copy(shader());
+  tell(done ? 'The shader is in the clipboard.' : 'The shader could not be copied: this browser gives no way to it here.');
   button.textContent = done ? 'Copied' : 'Not copied';
-  setTimeout(() => (button.textContent = label), 2000);
+  setTimeout(() => (button.textContent = button.dataset.label), 2000);
 }
 
 const actions = {
   time: measure,
-  shader: (button) => copied(shader(), 'The shader', button),
-  command: (button) => copied(one('.live-command code').textContent, 'The command', button),
-  recipe: (button) => copied(one('.live-copying code').textContent, 'The command', button),
+  shader: copyShader,
   start: () => set(structuredClone(live.start)),
 };
 for (const button of all('[data-do]')) button.addEventListener('click', () => actions[button.dataset.do](button));
@@ -442,10 +465,16 @@ function isOnSeam({ clientX }) {
   return !seam.hidden && Math.abs(clientX - left - (live.state.wipe / 100) * width) < SEAM;
 }
 
+/** Gives the wheel to the picture, or back to the page. The focus is not enough: the scene gets it when it starts, and
+ * the page must scroll on. */
+const hold = (on) => canvas.classList.toggle('held', on);
+canvas.addEventListener('blur', () => hold(false));
+
 const fingers = new Map();
 let wiping = false;
 canvas.addEventListener('pointerdown', (event) => {
   canvas.setPointerCapture(event.pointerId);
+  hold(true);
   wiping = fingers.size === 0 && isOnSeam(event);
   fingers.set(event.pointerId, event);
 });
@@ -461,12 +490,19 @@ canvas.addEventListener('pointermove', (event) => {
     return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
   };
   const distance = fingers.size === 2 && apart();
+  // Each of two fingers turns half as far.
+  const turn = distance ? 0.2 : 0.4;
   fingers.set(event.pointerId, event);
   if (wiping) return void set({ wipe: wipeAt(event) });
-  if (distance) move(0, 0, distance / apart());
-  else move(0.4 * (before.clientY - event.clientY), 0.4 * (before.clientX - event.clientX));
+  const share = distance ? distance / apart() : 1;
+  move(turn * (before.clientY - event.clientY), turn * (before.clientX - event.clientX), share);
 });
+// One finger up or down scrolls the page, which `touch-action` leaves to the browser; two are the scene's.
+for (const kind of ['touchstart', 'touchmove']) {
+  canvas.addEventListener(kind, (event) => event.touches.length > 1 && event.preventDefault(), { passive: false });
+}
 canvas.addEventListener('wheel', (event) => {
+  if (!canvas.classList.contains('held') && !event.ctrlKey) return;
   event.preventDefault();
   move(0, 0, Math.exp(0.001 * clamped(event.deltaY, -200, 200)));
 }, { passive: false });
@@ -474,6 +510,7 @@ const keys = {
   ArrowLeft: [0, -5], ArrowRight: [0, 5], ArrowUp: [-5, 0], ArrowDown: [5, 0], '+': [0, 0, 1 / 1.1], '-': [0, 0, 1.1],
 };
 canvas.addEventListener('keydown', (event) => {
+  if (event.key === 'Escape') hold(false);
   if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
   event.preventDefault();
   move(...keys[event.key]);

@@ -209,14 +209,17 @@ impl Kind {
     }
 
     /// Reads the committed report.
-    pub(super) fn report(&self) -> Result<Report, CostError> {
+    ///
+    /// # Errors
+    /// Returns an error if it is missing or damaged.
+    pub fn report(&self) -> Result<Report, CostError> {
         let path = repository::place().join("docs/measurements/lavapipe").join(format!("{}.json", self.report));
         let unfit = |error: std::io::Error| CostError::Record { path: path.clone(), what: error.to_string() };
         Report::from_json(self.report, &std::fs::read_to_string(&path).map_err(unfit)?)
     }
 
     /// Returns the side of the timed pictures, and the views over which errors and times are averaged.
-    pub(super) fn measured<'r>(&self, report: &'r Report) -> (u64, Vec<&'r str>) {
+    pub fn measured<'r>(&self, report: &'r Report) -> (u64, Vec<&'r str>) {
         match self.technique {
             Technique::Convex => (report.setting("side"), VIEWS.map(|view| view.name).into()),
             Technique::Concave => (report.setting("side"), CONCAVE.map(|view| view.name).into()),

@@ -4,6 +4,7 @@ use super::super::{
     Parts,
     guides::Guide,
     markdown::{self, Heading},
+    take,
     templates::{self, Markup},
     text,
 };
@@ -23,9 +24,8 @@ struct Values<'a> {
     headings: Vec<&'a Heading>,
     ladders: Vec<&'a Markup>,
     /// Shaders of the rungs, on the page that says which to choose.
-    takes: &'a [super::super::take::Take],
+    takes: Vec<take::Group<'a>>,
     live: Vec<&'a super::super::LivePage>,
-    note: &'a str,
 }
 
 /// Returns the page of a guide.
@@ -39,9 +39,8 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
         rest: doc.rest,
         headings: doc.headings.iter().filter(|heading| heading.level == 2).collect(),
         ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
-        takes: if of.name == CHOOSING { &parts.takes } else { &[] },
+        takes: if of.name == CHOOSING { take::groups(&parts.takes) } else { Vec::new() },
         live: parts.live.iter().collect(),
-        note: super::super::choices::NOTE,
     };
     let body = templates::render("guide.html", values);
     let path = address("guides", of.name);

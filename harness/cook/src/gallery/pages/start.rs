@@ -54,9 +54,7 @@ fn default<'a>(
     parts: &'a Parts<'_>,
     of: &crate::gallery::techniques::Technique,
 ) -> Option<&'a super::super::choices::Choice> {
-    let of_ladder = |take: &&super::super::take::Take| {
-        of.ladders.first() == Some(&take.choice.ladder)
-            && take.choice.quality == lapidary_plan::Quality::default().name()
-    };
+    let of_ladder =
+        |take: &&super::super::take::Take| of.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
     parts.takes.iter().find(of_ladder).map(|take| &take.choice)
 }

@@ -6,7 +6,8 @@ use super::super::{
     markdown,
     mirror::{self, Coloured},
     pictures::Shown,
-    techniques::Technique,
+    take,
+    techniques::{TECHNIQUES, Technique},
     templates::{self, Markup},
 };
 use super::{Entry, Page, address};
@@ -37,16 +38,25 @@ struct Values<'a> {
     /// Modules whose page tells of hard cases.
     hard: Vec<&'a str>,
     solves: bool,
-    note: &'a str,
     /// The page that says everything about it.
     whole: String,
-    takes: Vec<&'a super::super::take::Take>,
+    takes: Vec<take::Group<'a>>,
+    /// The technique to take in other light.
+    beside: Option<Beside<'a>>,
     diagrams: Vec<&'a super::super::DrawnDiagram>,
     ladders: Vec<&'a Markup>,
     pictures: Vec<&'a Shown>,
     guides: Vec<Guide>,
     modules: Vec<Named<'a>>,
     recipes: Vec<Named<'a>>,
+}
+
+/// Another technique, and when to take it instead.
+#[derive(Serialize)]
+struct Beside<'a> {
+    name: &'a str,
+    title: &'a str,
+    when: &'a str,
 }
 
 #[derive(Serialize)]
@@ -91,9 +101,12 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         of_module: pair.as_ref().map_or("", |(module, _)| module.name),
         hard: of.modules.iter().copied().filter(|name| has_hard_cases(name)).collect(),
         solves: of.solves,
-        note: super::super::choices::NOTE,
         whole,
-        takes: parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder)).collect(),
+        takes: take::groups(parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder))),
+        beside: of.beside.as_ref().and_then(|(name, when)| {
+            let other = TECHNIQUES.iter().find(|other| other.name == *name)?;
+            Some(Beside { name, title: other.title, when })
+        }),
         diagrams: diagrams(parts, of),
         // The first; the guides have the others.
         ladders: of.ladders.iter().take(1).filter_map(|name| parts.ladders.get(*name)).collect(),

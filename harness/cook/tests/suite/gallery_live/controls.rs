@@ -136,6 +136,84 @@ fn the_address_holds_the_state() {
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
+/// What appears by a choice or a press takes no other control's place, and a wipe says why it does nothing.
+#[test]
+fn no_control_slides_under_a_pointer() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    page.grant_clipboard().expect("granted");
+    // Within the controls: the window may scroll.
+    let places = "(() => {
+        const { left, top } = document.querySelector('.live-controls').getBoundingClientRect();
+        return Array.from(document.querySelectorAll('.live-controls :is(select, input, button)'), (control) => {
+            const box = control.getBoundingClientRect();
+            return [box.left - left, box.top - top, box.width, box.height].map(Math.round).join();
+        });
+    })()";
+    let wipe = "(() => {
+        const row = document.querySelector('[data-wipe]');
+        return [row.querySelector('input').disabled, row.querySelector('output').textContent];
+    })()";
+    let before = page.evaluate(places).expect("places");
+    assert_eq!(page.evaluate(wipe).expect("a row"), json!([true, "nothing beside"]));
+    set(&mut page, "state.other = 'surface'");
+    assert_eq!(page.evaluate(places).expect("places"), before, "a rung beside it");
+    assert_eq!(page.evaluate(wipe).expect("a row"), json!([false, "50 %"]));
+    set(&mut page, "state.rung = 'surface'");
+    assert_eq!(page.evaluate(wipe).expect("a row"), json!([true, "same rung twice"]));
+    assert_eq!(page.evaluate(places).expect("places"), before, "the same rung twice");
+    let left_out = "Array.from(document.querySelectorAll('[name=other] option:disabled'), ({ value }) => value)";
+    assert_eq!(page.evaluate(left_out).expect("names"), json!(["surface"]));
+    page.click("[data-do=shader]").expect("a button");
+    page.wait_for("document.querySelector('[data-do=shader]').textContent === 'Copied'", SOON).expect("copied");
+    assert_eq!(page.evaluate(places).expect("places"), before, "a text is copied");
+    let width = "document.querySelector('.live-command .copy').getBoundingClientRect().width";
+    let wide = page.evaluate(width).expect("a width");
+    page.click(".live-command .copy").expect("a button");
+    page.wait_for("document.querySelector('.live-command .copy').textContent === 'Copied'", SOON).expect("copied");
+    assert_eq!(page.evaluate(width).expect("a width"), wide, "a command is copied");
+    // The command is whole.
+    let cut = "Array.from(document.querySelectorAll('.live-command code')).some((code) => code.scrollWidth > code.clientWidth + 1)";
+    assert_eq!(page.evaluate(cut).expect("a comparison"), false);
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// The wheel is the page's until the picture is clicked, and again after Escape; with Ctrl it is the picture's.
+#[test]
+fn the_wheel_is_the_pages_until_a_click() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    page.run("document.querySelector('.live canvas').scrollIntoView({ block: 'center', behavior: 'instant' });")
+        .expect("in view");
+    let turned = |page: &mut lapidary_browser::Page, modifiers: u32| {
+        let place = "(() => {
+            const box = document.querySelector('.live canvas').getBoundingClientRect();
+            return [box.left + box.width / 2, box.top + box.height / 2];
+        })()";
+        let place = page.evaluate(place).expect("a place");
+        let wheel = json!({ "type": "mouseWheel", "x": place[0], "y": place[1], "deltaX": 0, "deltaY": 40, "modifiers": modifiers });
+        page.call("Input.dispatchMouseEvent", wheel).expect("turned");
+    };
+    let states = "[scrollY, gallery.live.state.distance]";
+    let before = page.evaluate(states).expect("states");
+    turned(&mut page, 0);
+    page.wait_for(&format!("scrollY > {}", before[0]), SOON).expect("the page scrolls");
+    assert_eq!(page.evaluate("gallery.live.state.distance").expect("a distance"), before[1]);
+    let further = |page: &mut lapidary_browser::Page, modifiers: u32, why: &str| {
+        let before = page.evaluate(states).expect("states");
+        turned(page, modifiers);
+        page.wait_for(&format!("gallery.live.state.distance > {}", before[1]), SOON).expect(why);
+    };
+    const CTRL: u32 = 2;
+    further(&mut page, CTRL, "with Ctrl");
+    page.click(".live canvas").expect("clicked");
+    further(&mut page, 0, "after a click");
+    page.press("Escape").expect("pressed");
+    let before = page.evaluate(states).expect("states");
+    turned(&mut page, 0);
+    page.wait_for(&format!("scrollY !== {}", before[0]), SOON).expect("the page scrolls again");
+    assert_eq!(page.evaluate("gallery.live.state.distance").expect("a distance"), before[1]);
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
 /// By keys, by the mouse, and by the wheel.
 #[test]
 fn the_eye_is_moved() {
@@ -179,7 +257,14 @@ fn a_measured_time_is_drawn_into_the_plot() {
     let Some(mut page) = running("brilliant", "") else { return };
     page.click("[data-do=time]").expect("a button");
     let text = page.wait_for("document.querySelector('.live-time').textContent", super::DRAWN).expect("a time");
-    assert!(text.as_str().is_some_and(|text| text.contains(" ms on your GPU")), "{text}");
+    let text = text.as_str().expect("a text");
+    for words in [
+        format!("{0} × {0} pixels, one sample each, controls as at the start", SCENES[0].timed_side),
+        format!("The picture on screen ({SIDE} × {SIDE} pixels, 9 samples each, controls as they are)"),
+    ] {
+        assert!(text.contains(&words), "{words}: {text}");
+    }
+    assert_eq!(text.matches(" ms on your GPU").count(), 2, "{text}");
     page.wait_for("document.querySelectorAll('svg.plot .visitor').length > 0", SOON).expect("a point in the plot");
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }

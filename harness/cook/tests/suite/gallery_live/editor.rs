@@ -16,6 +16,11 @@ const ONE_IN: u64 = 25;
 fn editing(page: &mut Page, function: &str) {
     page.click(".check-open").expect("a button");
     page.wait_for("!document.querySelector('.check-editor').hidden", SOON).expect("the editor opens");
+    editing_other(page, function);
+}
+
+/// Chooses a function in an open editor.
+fn editing_other(page: &mut Page, function: &str) {
     let choose = format!(
         "const choice = document.querySelector('.check-function');
         choice.value = {};
@@ -59,7 +64,10 @@ fn the_editor_tells_right_from_wrong() {
     // A wrong constant.
     edit(&mut page, "min(0.5f * (s * s", "min(0.5001f * (s * s");
     let wrong = checked(&mut page);
-    assert!(wrong.contains("rows hold") && !wrong.starts_with("All "), "{wrong}");
+    // The failure first: "N of M rows fail".
+    let words: Vec<&str> = wrong.split(' ').take(5).collect();
+    assert!(words[0].parse::<u32>().is_ok_and(|count| count > 0), "{wrong}");
+    assert_eq!((words[1], &words[3..]), ("of", &["rows", "fail"][..]), "{wrong}");
     for word in ["The worst", "expected", "got", "tolerance", "cosine", "relative_index"] {
         assert!(wrong.contains(word), "{word}: {wrong}");
     }
@@ -77,6 +85,56 @@ fn the_editor_tells_right_from_wrong() {
     page.click(".check-restore").expect("a button");
     let again = checked(&mut page);
     assert!(again.starts_with("All "), "{again}");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// A check runs one function of the text: what else is changed is named, seen and said, before anything holds.
+#[test]
+fn what_is_changed_but_not_checked_is_named() {
+    let Some(mut page) = opened("modules/dispersion.html") else { return };
+    editing(&mut page, "dispersion_sellmeier");
+    // No function is another by a comment or a space.
+    edit(&mut page, "    // From nm² to µm².\n", "        // Squared.\n");
+    let right = checked(&mut page);
+    assert!(right.starts_with("All ") && !right.contains("changed"), "{right}");
+    let broken = ["return coefficients.x + (", "return coefficients.y + ("];
+    edit(&mut page, broken[0], broken[1]);
+    let left = "dispersion_cauchy is changed too, but not checked: choose it to check it.";
+    let other = checked(&mut page);
+    assert!(other.starts_with(left), "{other}");
+    assert!(
+        other.contains("rows hold for dispersion_sellmeier") && other.contains("It is as in the cookbook."),
+        "{other}"
+    );
+    let said = page.evaluate("document.querySelector('#status').textContent").expect("words");
+    assert!(said.as_str().is_some_and(|said| said.starts_with(left) && said.contains("All ")), "{said}");
+    // The button beside it checks it, and the result is in view.
+    page.click(".check-left .check-line").expect("a button");
+    let failed = "document.querySelector('.check-fails')?.textContent";
+    let wrong = page.wait_for(failed, CHECK).expect("a failure");
+    assert!(wrong.as_str().is_some_and(|wrong| wrong.contains("rows fail for dispersion_cauchy")), "{wrong}");
+    let place = "(() => {
+        const { top, bottom } = document.querySelector('.check-fails').getBoundingClientRect();
+        return top >= 0 && bottom <= innerHeight && document.activeElement.className;
+    })()";
+    page.wait_for(&format!("{place} === 'check-run'"), SOON).expect("in view, with the focus on the button");
+    // What held as it is needs no other check; what needs a change is named as well.
+    edit(&mut page, broken[1], "return coefficients.x + 0.0f + (");
+    assert!(checked(&mut page).starts_with("All "));
+    edit(&mut page, "fn dispersion_sellmeier(", "const DISPERSION_NEW = 1.0f;\nfn dispersion_sellmeier(");
+    edit(&mut page, "return max(sqrt(max(1.0f + material", "return max(sqrt(max(DISPERSION_NEW + material");
+    let own = checked(&mut page);
+    assert!(own.starts_with("dispersion_sellmeier is changed too, but not checked"), "{own}");
+    editing_other(&mut page, "dispersion_sellmeier");
+    let both = checked(&mut page);
+    assert!(both.starts_with("All ") && !both.contains("changed"), "{both}");
+    edit(&mut page, "DISPERSION_NEW = 1.0f", "DISPERSION_NEW = 1.5f");
+    editing_other(&mut page, "dispersion_cauchy");
+    let through = checked(&mut page);
+    assert!(through.starts_with("dispersion_sellmeier is changed too, but not checked"), "{through}");
+    page.click(".check-restore").expect("a button");
+    let again = checked(&mut page);
+    assert!(again.starts_with("All ") && !again.contains("changed"), "{again}");
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
