@@ -1,20 +1,15 @@
-//! The rungs that the qualities choose, as the planner has them, with their figures on two devices, and what holds 60
-//! frames a second on the one GPU that was measured.
+//! The rungs that the qualities choose, as the planner has them, with their figures on two devices.
+
+mod on_gpu;
+mod sixty;
 
 use super::ladder::{KINDS, Kind};
 use super::templates;
-use crate::cost::Report;
-use lapidary_plan::ladder::{Ladder, SAME_TIME, Step};
-use lapidary_plan::{Geometry, Quality, Rung, Technique};
+use lapidary_plan::ladder::{SAME_TIME, Step};
+use lapidary_plan::{Quality, Rung};
+use on_gpu::OnGpu;
 use serde::Serialize;
-
-/// The reports of a GPU, by the ladder's report.
-const GPU: [(&str, &str); 4] = [
-    ("gem", include_str!("../../../../docs/measurements/nvidia_h200/gem.json")),
-    ("cdrf", include_str!("../../../../docs/measurements/nvidia_h200/cdrf.json")),
-    ("optical_path", include_str!("../../../../docs/measurements/nvidia_h200/optical_path.json")),
-    ("translucent", include_str!("../../../../docs/measurements/nvidia_h200/translucent.json")),
-];
+use sixty::Sixty;
 
 /// The device of the committed ladders.
 const CPU: &str = "lavapipe on 2 CPU cores";
@@ -22,13 +17,13 @@ const CPU: &str = "lavapipe on 2 CPU cores";
 /// What a rung is for that is better than that of `fast` on the GPU.
 const ON_A_GPU: &str = "fast, on a GPU";
 
-/// Milliseconds of a frame, of which 60 are shown in a second.
-const SIXTIETH: f64 = 1000.0 / 60.0;
-
 /// What the errors of a measure are, in words.
 const GLOSSES: [(&str, &str); 3] = [
     ("FLIP", "the visible difference from the spectral reference, from 0 to 1"),
-    ("distance from walks", "the difference of linear radiance from random walks, as a share of theirs"),
+    (
+        "distance from walks",
+        "the root mean squared difference of linear radiance from random walks, after the best exposure, as a share of theirs",
+    ),
     ("nats of error", "the error of the optical depth along the path; one nat is a factor of e in the light"),
 ];
 
@@ -100,65 +95,11 @@ pub struct Heading {
     pub cpu_size: String,
 }
 
-/// A rung that may hold 60 frames a second.
-#[derive(Clone, Debug, Serialize)]
-struct Held {
-    rung: String,
-    error: String,
-    ms: String,
-    any_shape: bool,
-    holds: bool,
-}
-
 /// A ladder's choices, for the page.
 #[derive(Serialize)]
 struct Group {
     heading: Heading,
     choices: Vec<Choice>,
-}
-
-/// A ladder's committed report of the GPU.
-struct OnGpu {
-    report: Report,
-    ladder: Option<Ladder>,
-}
-
-impl OnGpu {
-    fn of(kind: &Kind) -> Self {
-        let record = GPU.iter().find(|(report, _)| *report == kind.report).map_or("", |(_, record)| record);
-        let ladder = Ladder::of_record(kind.technique, record).ok();
-        Self { report: serde_json::from_str(record).unwrap_or_default(), ladder }
-    }
-
-    /// Returns the GPU's name, without its driver.
-    fn name(&self) -> String {
-        self.report.adapter.split(" (").next().unwrap_or_default().to_owned()
-    }
-
-    fn steps(&self) -> &[Step] {
-        self.ladder.as_ref().map_or(&[], |ladder| &ladder.steps)
-    }
-
-    /// Returns the milliseconds of a rung; those of a stone are of a whole frame that it fills.
-    fn ms(&self, kind: &Kind, rung: &str) -> Option<f64> {
-        if kind.report == "gem" {
-            return self.report.ms(rung, "filled", "time");
-        }
-        self.steps().iter().find(|step| step.rung == rung).map(|step| step.ms)
-    }
-
-    /// Returns the measured rungs that differ from this one in their hits or in their colours alone.
-    fn relatives(&self, kind: &Kind, rung: Rung) -> Vec<Timed> {
-        let is_near = |other: &str| match (rung, other.parse()) {
-            (
-                Rung::Inside { geometry, hits, spectrum },
-                Ok(Rung::Inside { geometry: other_geometry, hits: other_hits, spectrum: other_spectrum }),
-            ) => geometry == other_geometry && (hits == other_hits || spectrum == other_spectrum),
-            _ => false,
-        };
-        let near = self.steps().iter().filter(|step| is_near(&step.rung));
-        near.filter_map(|step| Some(Timed { rung: step.rung.clone(), ms: shown(self.ms(kind, &step.rung)?) })).collect()
-    }
 }
 
 /// Returns the choices of every ladder.
@@ -178,7 +119,7 @@ pub fn heading(kind: &Kind) -> Heading {
         gloss: gloss(measure),
         views: views.iter().map(|view| (*view).to_owned()).collect(),
         gpu: on_gpu.name(),
-        gpu_size: if kind.report == "gem" { format!("{}, filled", on_gpu.report.size()) } else { size.clone() },
+        gpu_size: if on_gpu.fills { format!("{}, filled", on_gpu.report.size()) } else { size.clone() },
         cpu: CPU,
         cpu_size: size,
     }
@@ -200,7 +141,7 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
     let choice = |rung: Rung, qualities: Vec<For>| {
         let name = rung.to_string();
         let step = ladder.step(&name)?;
-        let gpu = on_gpu.ms(kind, &name).map(shown);
+        let gpu = on_gpu.ms(&name).map(shown);
         Some(Choice {
             ladder: kind.name,
             title: kind.title,
@@ -210,7 +151,7 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
             gloss: gloss(ladder.measure),
             error: format!("{:.2}", step.error),
             ms: shown(step.ms),
-            relatives: if gpu.is_none() { on_gpu.relatives(kind, rung) } else { Vec::new() },
+            relatives: if gpu.is_none() { on_gpu.relatives(rung) } else { Vec::new() },
             gpu,
             times: format!("{:.1}", step.ms / ladder.step(&fast.to_string())?.ms),
             rung: name,
@@ -221,7 +162,7 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
         let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
         choices.extend(choice(*rung, qualities.iter().map(of).collect()));
         if qualities.contains(&Quality::Fast) {
-            let better = better_on_gpu(kind, &on_gpu, *rung).filter(|better| chosen.iter().all(|(of, _)| of != better));
+            let better = better_on_gpu(kind, on_gpu, *rung).filter(|better| chosen.iter().all(|(of, _)| of != better));
             choices.extend(better.and_then(|better| choice(better, vec![For { name: ON_A_GPU, is_default: false }])));
         }
     }
@@ -231,33 +172,13 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
 /// Returns the rung nearest to the truth among those that the GPU draws faster than this one; `None` if this one is.
 fn better_on_gpu(kind: &Kind, on_gpu: &OnGpu, rung: Rung) -> Option<Rung> {
     let (name, ladder) = (rung.to_string(), kind.technique.ladder()?);
-    let (most, error) = (on_gpu.ms(kind, &name)?, ladder.step(&name)?.error);
+    let (most, error) = (on_gpu.ms(&name)?, ladder.step(&name)?.error);
     let nearer = |other: &&Step| {
-        let is_faster = on_gpu.ms(kind, &other.rung).is_some_and(|ms| (1.0 + SAME_TIME) * ms < most);
+        let is_faster = on_gpu.ms(&other.rung).is_some_and(|ms| (1.0 + SAME_TIME) * ms < most);
         is_faster && other.error < error
     };
     let nearest = ladder.steps.iter().filter(nearer).min_by(|a, b| a.error.total_cmp(&b.error))?;
     nearest.rung.parse().ok()
-}
-
-/// Returns the rungs by map and by hierarchy whose frame the GPU drew, by time, with their errors on the same stones.
-fn held(kind: &Kind, on_gpu: &OnGpu) -> Vec<Held> {
-    let geometry = |rung: &str| match rung.parse() {
-        Ok(Rung::Inside { geometry, .. }) => Some(geometry),
-        _ => None,
-    };
-    let is_shown = |step: &&Step| matches!(geometry(&step.rung), Some(Geometry::Walk | Geometry::Bvh));
-    let timed = |step: &'_ Step| Some((on_gpu.ms(kind, &step.rung)?, step.clone()));
-    let mut timed: Vec<(f64, Step)> = on_gpu.steps().iter().filter(is_shown).filter_map(timed).collect();
-    timed.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let held = |(ms, step): (f64, Step)| Held {
-        any_shape: geometry(&step.rung) == Some(Geometry::Bvh),
-        error: format!("{:.2}", step.error),
-        ms: shown(ms),
-        holds: ms <= SIXTIETH,
-        rung: step.rung,
-    };
-    timed.into_iter().map(held).collect()
 }
 
 fn gloss(measure: &str) -> &'static str {
@@ -273,38 +194,12 @@ pub fn page() -> String {
     #[derive(Serialize)]
     struct Values {
         groups: Vec<Group>,
-        adapter: String,
-        size: String,
-        least: String,
-        held: Vec<Held>,
-        nearest: Option<Held>,
+        sixty: Sixty,
         unmeasured: Vec<Choice>,
-        /// The size and the longest time of the scattering bodies' choices.
-        small: String,
-        longest: String,
     }
-    let groups: Vec<Group> =
-        KINDS.iter().map(|kind| Group { heading: heading(kind), choices: of_kind(kind) }).collect();
-    let stones = KINDS.iter().find(|kind| kind.technique == Technique::Convex).unwrap_or(&KINDS[0]);
-    let on_gpu = OnGpu::of(stones);
-    let held = held(stones, &on_gpu);
-    let scattering = KINDS.iter().filter(|kind| kind.report != "gem");
-    let times = |kind: &'static Kind| {
-        let on_gpu = OnGpu::of(kind);
-        of_kind(kind).into_iter().filter_map(move |choice| on_gpu.ms(kind, &choice.rung))
-    };
-    let values = Values {
-        adapter: on_gpu.report.adapter.clone(),
-        size: on_gpu.report.size(),
-        least: shown(SIXTIETH),
-        nearest: held.iter().filter(|of| of.holds).min_by(|a, b| a.error.cmp(&b.error)).cloned(),
-        held,
-        small: scattering.clone().map(|kind| heading(kind).gpu_size).next().unwrap_or_default(),
-        longest: shown(scattering.flat_map(times).fold(0.0, f64::max)),
-        unmeasured: all().into_iter().filter(|choice| choice.gpu.is_none()).collect(),
-        groups,
-    };
-    templates::render("choices.md", values).0 + "\n"
+    let groups = KINDS.iter().map(|kind| Group { heading: heading(kind), choices: of_kind(kind) }).collect();
+    let unmeasured = all().into_iter().filter(|choice| choice.gpu.is_none()).collect();
+    templates::render("choices.md", Values { groups, sixty: sixty::sixty(), unmeasured }).0 + "\n"
 }
 
 #[cfg(test)]
@@ -332,34 +227,33 @@ mod tests {
     #[test]
     fn what_is_better_on_the_gpu_stands_below_fast() {
         let all = all();
-        let better: Vec<&str> = all
-            .iter()
-            .filter(|choice| choice.qualities[0].name == ON_A_GPU)
-            .map(|choice| choice.rung.as_str())
-            .collect();
-        assert_eq!(better, ["diffusion-32"]);
+        let below = |pair: &[Choice]| {
+            let of = |choice: &Choice| choice.qualities.iter().map(|of| of.name).collect::<Vec<_>>();
+            (of(&pair[1]) == [ON_A_GPU]).then(|| (of(&pair[0]), pair[0].rung.clone(), pair[1].rung.clone()))
+        };
+        let found: Vec<_> = all.windows(2).filter_map(below).collect();
+        assert_eq!(found, [(vec!["fast"], "godunov-32".to_owned(), "diffusion-32".to_owned())]);
     }
 
     #[test]
     fn both_devices_measured_the_same_views_at_the_same_size() {
         for kind in &KINDS {
-            let (on_gpu, report) = (OnGpu::of(kind).report, kind.report().expect("committed"));
-            assert_eq!(kind.measured(&on_gpu), kind.measured(&report), "{}", kind.name);
+            let (on_gpu, report) = (OnGpu::of(kind), kind.report().expect("committed"));
+            assert_eq!(kind.measured(&on_gpu.report), kind.measured(&report), "{}", kind.name);
             let heading = heading(kind);
             assert!(!heading.gloss.is_empty() && !heading.gpu.is_empty() && !heading.views.is_empty(), "{heading:?}");
         }
     }
 
     #[test]
-    fn a_default_that_the_gpu_did_not_draw_names_what_it_drew() {
+    fn what_the_gpu_did_not_draw_is_in_no_frame_of_its_record_and_names_what_is() {
         for choice in all().iter().filter(|choice| choice.gpu.is_none()) {
+            let kind = Kind::named(choice.ladder).expect("there");
+            let rows = &OnGpu::of(kind).report.rows;
+            let of_frame = |row: &&crate::cost::Row| row.view == "filled" || kind.report != "gem";
+            let drawn = rows.iter().filter(of_frame).find(|row| row.rung == choice.rung && row.ms.is_some());
+            assert!(drawn.is_none(), "{choice:?}: {drawn:?}");
             assert!(!choice.relatives.is_empty(), "{choice:?}");
         }
-        let stones = Kind::named("convex").expect("there");
-        let on_gpu = OnGpu::of(stones);
-        let held = held(stones, &on_gpu);
-        assert!(held.iter().any(|of| of.holds) && held.iter().any(|of| !of.holds), "{held:?}");
-        // The rows are in order of time, so that those which hold come first.
-        assert!(held.is_sorted_by_key(|of| !of.holds), "{held:?}");
     }
 }

@@ -116,6 +116,7 @@ const ASSETS: &[(&str, &[u8])] = &[
     ("site.js", include_bytes!("assets/site.js")),
     ("style.css", include_bytes!("assets/style.css")),
     ("syntax.css", include_bytes!("assets/syntax.css")),
+    ("takes.css", include_bytes!("assets/takes.css")),
     ("theme.js", include_bytes!("assets/theme.js")),
 ];
 

@@ -258,7 +258,7 @@
         : 'from the pictures to look at, whose compression leaves a few steps of 255.';
       this.figure.querySelector('.compare-says').textContent = checked
         ? `Difference of red, green and blue, each by itself: absolute, of sRGB values as shown (not of linear light), ${gain}. ` +
-          `Black: equal. A colour: these channels differ. Full brightness: by ${white} steps of 255 or more. Computed ${of}`
+          `Black: equal. A colour: these channels differ. Full brightness: by ${white} steps of 255${white < 255 ? ' or more' : ''}. Computed ${of}`
         : '';
     }
   }

@@ -218,18 +218,20 @@ const search = (() => {
     const name = entry.name.toLowerCase();
     const all = `${name} ${entry.on} ${entry.text} ${entry.words ?? ''}`.toLowerCase();
     const weight = { page: 3, function: 2, rung: 2, picture: 0.5, heading: 1 }[entry.kind];
-    let sum = 0;
+    let [sum, found] = [0, 0];
     for (const word of words) {
       if (!all.includes(word)) {
         if (some) continue;
         return 0;
       }
+      found += 1;
       if (name === word) sum += 12;
       else if (name.startsWith(word)) sum += 6;
       else if (name.includes(word)) sum += 4;
       else sum += 1;
     }
-    return sum && sum * weight - name.length / 1000;
+    // More of the words go before a better place of one.
+    return found && 1000 * found + sum * weight - name.length / 1000;
   }
 
   function show(text) {
@@ -242,7 +244,7 @@ const search = (() => {
     scored.sort((a, b) => b[0] - a[0]);
     list.replaceChildren(...scored.slice(0, MOST).map(([, entry], place) => option(entry, place)));
     const left = scored.length > MOST ? `${scored.length - MOST} more: a further word narrows it.` : '';
-    const none = words.length === 1 ? 'Nothing has this word.' : 'Nothing has one of these words.';
+    const none = words.length === 1 ? 'Nothing has this word.' : 'Nothing has any of these words.';
     const some = partial ? 'Nothing has all of these words; these have some. ' : '';
     dialog.querySelector('.hint').textContent = words.length && !scored.length ? none : some + left;
     choose(0);

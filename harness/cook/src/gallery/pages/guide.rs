@@ -45,7 +45,8 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
     let body = templates::render("guide.html", values);
     let path = address("guides", of.name);
     let description = text::first_sentence(&doc.summary);
-    let mut page = Page::new("guide", path, of.title, description, body).with(&["diagram.css", "ladder.css"], &[]);
+    let mut page =
+        Page::new("guide", path, of.title, description, body).with(&["diagram.css", "ladder.css", "takes.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, description)];
     page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
     page

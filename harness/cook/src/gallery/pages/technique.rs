@@ -116,7 +116,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
         recipes: of.recipes.iter().copied().map(named).collect(),
     };
     let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
-        .with(&["diagram.css", "ladder.css"], &[]);
+        .with(&["diagram.css", "ladder.css", "takes.css"], &[]);
     page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
     for (at, kind) in of.ladders.iter().filter_map(|name| Kind::named(name)).enumerate() {
         // The first is on this page, the others on the guide that shows all.
