@@ -21,9 +21,25 @@
 
   const code = (text) => made('code', '', text);
 
+  /** A module without comments and with single spaces: a line of WGSL has more ends than \n, and comments nest. */
+  function stripped(module) {
+    let [text, at, depth] = ['', 0, 0];
+    while (at < module.length) {
+      const mark = depth > 0 ? /\/\*|\*\//g : /\/\*|\/\/[^\n\v\f\r\x85\u2028\u2029]*/g;
+      mark.lastIndex = at;
+      const [found] = mark.exec(module) ?? [''];
+      const end = found ? mark.lastIndex : module.length;
+      if (depth === 0) text += `${module.slice(at, end - found.length)} `;
+      if (found === '/*') depth += 1;
+      if (found === '*/') depth -= 1;
+      at = end;
+    }
+    return text.replace(/[\t-\r \x85\u200e\u200f\u2028\u2029]+/g, ' ');
+  }
+
   /** A module's declarations by name, without comments and with single spaces. */
   function declared(module) {
-    const bare = module.replace(/\/\*[\s\S]*?\*\/|\/\/.*/g, ' ').replace(/\s+/g, ' ');
+    const bare = stripped(module);
     const found = new Map();
     let [depth, from] = [0, 0];
     for (let at = 0; at < bare.length; at++) {
@@ -31,7 +47,7 @@
       if (bare[at] === '}') depth = Math.max(0, depth - 1);
       if (depth > 0 || !'};'.includes(bare[at])) continue;
       const text = bare.slice(from, at + 1).trim();
-      const name = /\b(?:fn|const|override|struct|alias|var(?: ?<[^>]*>)?) (\w+)/.exec(text)?.[1];
+      const name = /(?:(?:fn|const|override|struct|alias|var) |var ?<[^>]*> ?)([\p{XID_Start}_]\p{XID_Continue}*)/u.exec(text)?.[1];
       if (name) found.set(name, text);
       from = at + 1;
     }
@@ -39,10 +55,15 @@
   }
 
   /** Names of a declaration and of all that it needs. */
-  function needed(name, all, seen = new Set()) {
-    if (!all.has(name) || seen.has(name)) return seen;
-    seen.add(name);
-    for (const [word] of all.get(name).matchAll(/\w+/g)) needed(word, all, seen);
+  function needed(name, all) {
+    const seen = new Set(all.has(name) ? [name] : []);
+    // The loop comes to what it adds as well.
+    for (const each of seen) {
+      // Neither a number's suffix nor a member is a declaration's name.
+      for (const [word] of all.get(each).matchAll(/(?<![.\p{XID_Continue}])[\p{XID_Start}_]\p{XID_Continue}*/gu)) {
+        if (all.has(word)) seen.add(word);
+      }
+    }
     return seen;
   }
 
@@ -55,7 +76,6 @@
   class Editor {
     /** What held in a check: the text of each function, with all that it needs. */
     held = new Map();
-
 
     constructor(root) {
       this.root = root;
@@ -98,6 +118,8 @@
     async toggle() {
       if (this.editor.hidden) return this.begin(this.name);
       this.editor.hidden = true;
+      // Its buttons lead into the text.
+      this.result.replaceChildren();
       this.open.setAttribute('aria-expanded', 'false');
       this.open.textContent = 'Open the editor';
     }
@@ -170,21 +192,26 @@
     }
 
     async check() {
-      if (this.busy) return;
+      this.result.replaceChildren(made('p', 'dim', `Checking ${this.name} …`));
+      this.waits = this.busy;
+      if (this.waits) return;
       this.busy = true;
       this.run.setAttribute('aria-disabled', 'true');
-      this.result.replaceChildren(made('p', 'dim', `Checking ${this.name} …`));
       const [name, text] = [this.name, this.text.value];
+      // The visitor may turn to another function, change the text or close the editor meanwhile.
+      const asked = () => name === this.name && text === this.text.value && !this.editor.hidden;
       try {
         const found = await gallery.check(name, text);
-        // The visitor may have turned to another function meanwhile.
-        if (name === this.name) this.report(name, text, found);
+        if (found.held === found.rows) this.held.set(name, whole(name, declared(text)));
+        if (asked()) this.report(name, text, found);
       } catch (error) {
-        this.fail(error);
+        if (asked()) this.fail(error);
       } finally {
         this.busy = false;
         this.run.removeAttribute('aria-disabled');
       }
+      // A press during this check was about something else.
+      if (this.waits && !asked() && !this.editor.hidden) this.check();
     }
 
     fail(error) {
@@ -196,8 +223,10 @@
       this.result.replaceChildren(...parts);
       const others = parts.findIndex((part) => part.tagName !== 'P');
       gallery.say(parts.slice(0, others < 0 ? undefined : others).map((part) => part.dataset.said ?? part.textContent).join(' '));
-      // By Ctrl+Enter it may come below the window.
-      this.result.scrollIntoView({ block: 'nearest' });
+      // By Ctrl+Enter it may come below the window; who has gone on meanwhile is not pulled back.
+      const { top, bottom } = this.root.getBoundingClientRect();
+      const here = this.root.contains(document.activeElement) && top < innerHeight && bottom > 0;
+      if (here) this.result.scrollIntoView({ block: 'nearest' });
     }
 
     /** What is changed and did not hold in a check of its own, as paragraphs: a check runs one function of the text. */
@@ -209,11 +238,12 @@
       const reached = new Set(offered.flatMap((of) => [...needed(of, now), ...needed(of, before)]));
       const none = [...before.keys()].filter((of) => !reached.has(of) && now.get(of) !== before.get(of));
       const said = (names, one, more) => (names.length > 0 ? [this.left(names, `${row(names)} ${names.length > 1 ? more : one}`)] : []);
+      const changed = whole(name, now) === whole(name, before) ? 'changed' : 'changed too';
       const found = [
-        ...said(direct, 'is changed too, but not checked: choose it to check it.', 'are changed too, but not checked: choose each to check it.'),
+        ...said(direct, `is ${changed}, but not checked: choose it to check it.`, `are ${changed}, but not checked: choose each to check it.`),
         ...said(through, 'uses what is changed, and is not checked: choose it to check it.', 'use what is changed, and are not checked: choose each to check it.'),
       ];
-      if (none.length > 0) found.push(made('p', 'check-left', `${row(none)} ${none.length > 1 ? 'are' : 'is'} changed too, and no function that is checked here uses ${none.length > 1 ? 'them' : 'it'}.`));
+      if (none.length > 0) found.push(made('p', 'check-left', `${row(none)} ${none.length > 1 ? 'are' : 'is'} ${changed}, and no function that is checked here uses ${none.length > 1 ? 'them' : 'it'}.`));
       return found;
     }
 
@@ -245,14 +275,12 @@
         return;
       }
       const all = held === rows;
-      const now = whole(name, declared(text));
-      if (all) this.held.set(name, now);
       const left = this.unchecked(name, text);
       if (!all) {
         const fails = `${rows - held} of ${rows} rows fail for ${name} on ${adapter}; ${held === 0 ? 'none holds' : `${held} ${held === 1 ? 'holds' : 'hold'}`}.`;
         return this.tell(made('p', 'check-fails', fails), ...left, ...said, this.worst(worst));
       }
-      const same = left.length > 0 && now === whole(name, declared(this.original)) ? ' It is as in the cookbook.' : '';
+      const same = left.length > 0 && whole(name, declared(text)) === whole(name, declared(this.original)) ? ' It is as in the cookbook.' : '';
       const holds = made('p', 'check-holds', `All ${rows} rows hold for ${name} on ${adapter}.${same}`);
       // First what the rows say nothing about, so that it does not read as if all held.
       this.tell(...left, holds, ...said, this.worst(worst));
@@ -299,11 +327,19 @@
 
   const start = () => {
     const editors = Array.from(document.querySelectorAll('.check[data-module]'), (root) => new Editor(root));
-    // Elsewhere on the page: <button data-check="FUNCTION">.
+    // Elsewhere on the page: <a href="#edit-and-check" data-check="FUNCTION">.
     document.addEventListener('click', (event) => {
-      const name = event.target.closest?.('[data-check]')?.dataset.check;
+      // Such a click opens the link elsewhere.
+      if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+      const link = event.target.closest?.('a[data-check]');
+      const name = link?.dataset.check;
       const editor = editors.find(({ function: { options } }) => Array.from(options).some(({ value }) => value === name));
-      if (name && editor) editor.begin(name);
+      if (!editor) return;
+      // Following the link would take the focus from the text; a step back still leads to where it was clicked.
+      event.preventDefault();
+      if (location.hash !== link.hash) history.pushState(null, '', link.hash);
+      editor.open.focus();
+      editor.begin(name);
     });
   };
   if (document.readyState === 'loading') document.addEventListener('DOMContentLoaded', start);

@@ -117,25 +117,33 @@ function pipelines() {
 
 /** A pipeline's effects that are on and off, and its other constants. */
 function chosen({ overrides }) {
-  const all = Object.entries(overrides);
-  const effects = (on) => all.filter(([name, value]) => name.startsWith('EFFECT_') && (value !== 0) === on);
+  const constants = Object.entries(overrides);
+  const effects = (on) => constants.filter(([name, value]) => name.startsWith('EFFECT_') && (value !== 0) === on);
   const name = ([of]) => of.slice('EFFECT_'.length).toLowerCase();
-  const others = all.filter(([of]) => !of.startsWith('EFFECT_'));
+  const others = constants.filter(([of]) => !of.startsWith('EFFECT_'));
   return { on: effects(true).map(name), off: effects(false).map(name), set: others.map((pair) => pair.join('=')) };
 }
 
-/** Shows the commands, and what the first one leaves out. */
-function reflectCommands() {
+/** Shows the command that draws it, and what that leaves out. */
+function reflectCommand() {
   const { without } = moved();
   one('.live-command code').textContent = command();
   one('.live-left').textContent = without.length > 0 ? `The command has no option for what was moved here, so it draws without: ${without.join(', ')}.` : '';
   one('.live-left').hidden = without.length === 0;
-  const copying = live.sides.length > 0 ? pipelines().flatMap(({ copy }) => copy ?? []) : [];
-  one('.live-copying').hidden = copying.length === 0;
-  one('.live-copying code').textContent = copying.join('\n');
-  const drawing = live.sides.length > 0 ? pipelines().filter(({ copy }) => copy) : [];
-  const recipes = [...new Set(drawing.map(({ recipe }) => recipe))];
-  one('.live-recipes').replaceChildren(...recipes.flatMap((recipe) => {
+}
+
+/** Shows the commands that write the shaders that are drawn with, and links to their recipes. */
+function reflectShaders() {
+  // A new device has none yet; those of the old one stand until then.
+  if (live.sides.length === 0) return;
+  const copied = pipelines().filter(({ copy }) => copy);
+  one('.live-copying').hidden = copied.length === 0;
+  one('.live-copying code').textContent = copied.map(({ copy }) => copy).join('\n');
+  const [links, recipes] = [one('.live-recipes'), [...new Set(copied.map(({ recipe }) => recipe))]];
+  // Otherwise a link would lose the focus with each picture.
+  if (links.dataset.recipes === recipes.join()) return;
+  links.dataset.recipes = recipes.join();
+  links.replaceChildren(...recipes.flatMap((recipe) => {
     const link = document.createElement('a');
     [link.href, link.textContent] = [`${gallery.root}recipes/${recipe}.html`, recipe];
     return [link, ', or '];
@@ -169,13 +177,16 @@ function reflect() {
     one(`[data-slider="${name}"] output`).textContent = text;
     one(`[data-slider="${name}"] [data-reset]`).disabled = state.steps[name] === start;
   }
-  reflectCommands();
+  reflectCommand();
   if (fragment() !== location.hash.slice(1)) history.replaceState(null, '', `#${fragment()}`);
 }
 
 // Drawing: never more than the device keeps up with.
 
-let [drawing, wanted, measuring] = [null, false, null];
+let [drawing, wanted] = [null, false];
+/** The measurement that runs: what stops it, and a promise that is kept when it has ended. */
+let measuring = null;
+const [MEASURING, STOPPED] = ['Measuring …', 'Something was changed, so the measurement stopped.'];
 
 /** Draws, and once more if the state changed meanwhile. */
 async function drawn() {
@@ -186,19 +197,29 @@ async function drawn() {
   } while (wanted);
 }
 
+/** Stops the measurement that runs; the promise is kept when it has ended. */
+async function stopMeasuring() {
+  const stopped = measuring;
+  measuring = null;
+  stopped?.stop.abort();
+  await stopped?.done;
+}
+
 /** Changes the state, and draws; the promise is kept when it is shown. */
 function set(changes = {}) {
   Object.assign(live.state, changes);
   reflect();
   one('.live-time').textContent = '';
-  // What was said is of what was shown.
-  if (!note.classList.contains('failed')) tell('');
+  // What was said is of what was shown, but for why no time is there.
+  if (measuring) tell(STOPPED);
+  else if (!note.classList.contains('failed') && note.textContent !== STOPPED) tell('');
   wanted = true;
   // What is timed must stand until then.
-  drawing ??= Promise.resolve(measuring)
+  const ended = stopMeasuring();
+  drawing ??= ended
     .then(drawn)
     .then(() => note.classList.contains('failed') && tell(''))
-    .then(reflectCommands)
+    .then(reflectShaders)
     .finally(() => (drawing = null));
   return drawing.catch(failed);
 }
@@ -219,6 +240,7 @@ let lostDevices = 0;
 /** Replaces a lost device by another one, but not for ever. */
 async function lost(message) {
   lostDevices += 1;
+  stopMeasuring();
   losses = performance.now() - since > LASTING ? 1 : losses + 1;
   if (losses > MOST_LOSSES) return failed(new Error('The graphics device was lost again and again'));
   tell(`The graphics device was lost, so the scene starts on a new one. ${message}`, true);
@@ -237,6 +259,8 @@ async function begin() {
   try {
     since = performance.now();
     const before = lostDevices;
+    // What went wrong on the device before is no fault of the new one.
+    live.error = null;
     await live.open(lost);
     await live.draw();
     // What is drawn on a lost device ends too, and the loss may be told a moment later.
@@ -247,6 +271,7 @@ async function begin() {
     one('.live-device').hidden = false;
     one('.live-device').textContent = `Running on ${adapterName()}.`;
     reflect();
+    reflectShaders();
     tell('');
     settle.resolve();
   } catch (error) {
@@ -282,34 +307,49 @@ const AWAKE = 500;
 /** Browsers round a device's clock to tenths of milliseconds; shorter frames are timed by many, this long together. */
 const [SHORT, LONG_ENOUGH] = [2, 20];
 
-/** Milliseconds that a frame takes with all its passes. */
-async function timeOf(frame) {
-  const done = () => live.device.queue.onSubmittedWorkDone();
-  for (let run = 0, begin = performance.now(); run < WARM_UP && performance.now() - begin < AWAKE; run++) {
+const median = (numbers) => numbers.sort((a, b) => a - b)[numbers.length >> 1];
+
+/** Milliseconds that a frame takes with all its passes. A signal stops it after the run that is under way. */
+async function timeOf(frame, signal) {
+  const done = () => frame.device.queue.onSubmittedWorkDone();
+  for (let at = 0, begin = performance.now(); at < WARM_UP && performance.now() - begin < AWAKE; at++) {
+    signal.throwIfAborted();
     frame.draw();
     await done();
   }
-  const one = await frame.time(RUNS);
-  if (one >= SHORT) return one;
-  const times = [];
-  for (const count = Math.ceil(LONG_ENOUGH / Math.max(one, 0.05)); times.length < RUNS; ) {
-    const begin = performance.now();
-    for (let run = 0; run < count; run++) frame.draw();
-    await done();
-    times.push((performance.now() - begin) / count);
+  const runs = [];
+  for (const begin = performance.now(); runs.length < RUNS; ) {
+    // Of slow frames few are enough, as in `Frame.time`; that could not be stopped between its runs.
+    const enough = runs.some((ms) => ms > 1000) ? 3 : 5;
+    if (runs.length >= enough && performance.now() - begin > 1000) break;
+    signal.throwIfAborted();
+    runs.push(await frame.time(1));
   }
-  return times.sort((a, b) => a - b)[RUNS >> 1];
+  const alone = median(runs);
+  if (alone >= SHORT) return alone;
+  const means = [];
+  for (const count = Math.ceil(LONG_ENOUGH / Math.max(alone, 0.05)); means.length < RUNS; ) {
+    signal.throwIfAborted();
+    const begin = performance.now();
+    for (let at = 0; at < count; at++) frame.draw();
+    await done();
+    means.push((performance.now() - begin) / count);
+  }
+  return median(means);
 }
 
-/** Times the frames of the rungs that are shown, of the ladder's size and samples and as at the start. */
-async function times() {
+/** Times the frames of rungs that are shown, of the ladder's size and samples and as at the start. */
+async function times(sides, signal) {
+  const stopped = new Promise((_, reject) => signal.addEventListener('abort', () => reject(signal.reason)));
   const found = [];
-  for (const { name, rung } of live.sides.slice()) {
-    const frame = await live.load(rung.timed);
+  for (const { name, rung } of sides) {
+    signal.throwIfAborted();
+    const loading = live.load(rung.timed);
     try {
-      found.push({ rung: name, ms: await timeOf(frame) });
+      // Shaders may compile for seconds, and nothing stops that.
+      found.push({ rung: name, ms: await timeOf(await Promise.race([loading, stopped]), signal) });
     } finally {
-      frame.destroy();
+      loading.then((frame) => frame.destroy(), () => {});
     }
   }
   return found;
@@ -363,21 +403,25 @@ async function readback() {
 }
 
 /** Measures, says how long a frame takes, and puts it into the ladder's plot. */
-async function timed() {
-  const { manifest } = live;
+async function timed(signal) {
   await drawing?.catch(() => {});
-  tell('Measuring …');
-  const measured = await times();
+  const { manifest, sides } = live;
+  // That it does not run, or starts on a new device, has been said.
+  if (signal.aborted || canvas.hidden || sides.length === 0) return;
+  tell(MEASURING);
+  const measured = await times(sides, signal);
   const shown = [];
-  for (const { name, frame } of live.sides) shown.push({ rung: name, ms: await timeOf(frame) });
+  for (const { name, frame } of sides) shown.push({ rung: name, ms: await timeOf(frame, signal) });
+  signal.throwIfAborted();
+  // The next picture would fail by it too.
+  if (live.error) return failed(live.error);
   const { side, samples } = manifest.timed;
   const each = (of) => of.map(({ rung, ms }) => `${rung}: ${Number(ms.toPrecision(2))} ms on your GPU`).join(', ');
   const size = (width, height, samples) => `${width} × ${height} pixels, ${samples === 1 ? 'one sample' : `${samples * samples} samples`} each`;
   const ladder = `The ladder’s frame (${size(side, side, samples)}, controls as at the start): ${each(measured)}.`;
-  // What was moved meanwhile is on screen next, and not what was timed.
-  const now = wanted ? '' : ` The picture on screen (${size(canvas.width, canvas.height, manifest.samples)}, controls as they are), all its passes: ${each(shown)}.`;
+  const now = ` The picture on screen (${size(canvas.width, canvas.height, manifest.samples)}, controls as they are), all its passes: ${each(shown)}.`;
   one('.live-time').textContent = `${ladder}${now} Measured on ${adapterName()}.`;
-  tell('');
+  if (note.textContent === MEASURING) tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {
     for (const plot of document.querySelectorAll(`svg.plot[data-ladder="${manifest.ladder}"]`)) {
       gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
@@ -385,12 +429,25 @@ async function timed() {
   }
 }
 
+/** Measures until it is stopped, and says what went wrong. */
+async function measureUntil(signal) {
+  try {
+    await timed(signal);
+  } catch (error) {
+    // The loss of a device may be told a moment later than what it breaks.
+    if (!signal.aborted) await new Promise((resolve) => setTimeout(resolve, 0));
+    // Who stopped it has said why.
+    if (!signal.aborted) tell(error.message, true);
+  }
+}
+
 /** Measures, once at a time. */
 function measure() {
-  measuring ??= timed()
-    .catch(({ message }) => tell(message, true))
-    .finally(() => (measuring = null));
-  return measuring;
+  if (measuring) return measuring.done;
+  const stop = new AbortController();
+  const done = measureUntil(stop.signal).finally(() => measuring?.stop === stop && (measuring = null));
+  measuring = { stop, done };
+  return done;
 }
 
 /** Lights the scene by a picture: its width, height and texels. */
@@ -472,37 +529,53 @@ canvas.addEventListener('blur', () => hold(false));
 
 const fingers = new Map();
 let wiping = false;
+/** What a drag has changed, as it was before. */
+let undragged = null;
 canvas.addEventListener('pointerdown', (event) => {
+  // Other buttons are the browser's: what their menu swallows would never end.
+  if (event.button !== 0) return;
   canvas.setPointerCapture(event.pointerId);
-  hold(true);
+  // A finger has no wheel, and gives no focus, by whose end the wheel would be free again.
+  if (event.pointerType !== 'touch') hold(true);
   wiping = fingers.size === 0 && isOnSeam(event);
   fingers.set(event.pointerId, event);
 });
 for (const end of ['pointerup', 'pointercancel']) {
-  canvas.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId));
+  canvas.addEventListener(end, ({ pointerId }) => {
+    fingers.delete(pointerId);
+    const isCancelled = end === 'pointercancel';
+    // The browser scrolls the page by it instead, which it sees after some pixels.
+    if (isCancelled && undragged) set(undragged);
+    if (isCancelled || fingers.size === 0) undragged = null;
+  });
 }
 canvas.addEventListener('pointermove', (event) => {
   const before = fingers.get(event.pointerId);
   canvas.classList.toggle('on-seam', before ? wiping : isOnSeam(event));
   if (!before) return;
   const apart = () => {
-    const [one, other] = fingers.values();
-    return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
+    const [first, second] = fingers.values();
+    return Math.hypot(first.clientX - second.clientX, first.clientY - second.clientY);
   };
-  const distance = fingers.size === 2 && apart();
+  const width = fingers.size === 2 && apart();
   // Each of two fingers turns half as far.
-  const turn = distance ? 0.2 : 0.4;
+  const turn = width ? 0.2 : 0.4;
   fingers.set(event.pointerId, event);
+  const { wipe, polar, azimuth, distance } = live.state;
+  undragged ??= { wipe, polar, azimuth, distance };
   if (wiping) return void set({ wipe: wipeAt(event) });
-  const share = distance ? distance / apart() : 1;
+  const share = width ? width / apart() : 1;
   move(turn * (before.clientY - event.clientY), turn * (before.clientX - event.clientX), share);
 });
 // One finger up or down scrolls the page, which `touch-action` leaves to the browser; two are the scene's.
 for (const kind of ['touchstart', 'touchmove']) {
-  canvas.addEventListener(kind, (event) => event.touches.length > 1 && event.preventDefault(), { passive: false });
+  // Once the page scrolls it does so to its end.
+  const take = (event) => event.touches.length > 1 && event.cancelable && event.preventDefault();
+  canvas.addEventListener(kind, take, { passive: false });
 }
 canvas.addEventListener('wheel', (event) => {
-  if (!canvas.classList.contains('held') && !event.ctrlKey) return;
+  // With Ctrl too, for by that one enlarges the page.
+  if (!canvas.classList.contains('held')) return;
   event.preventDefault();
   move(0, 0, Math.exp(0.001 * clamped(event.deltaY, -200, 200)));
 }, { passive: false });

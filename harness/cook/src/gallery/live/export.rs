@@ -4,7 +4,7 @@ use super::LiveError;
 use super::again::again;
 use super::copying;
 use super::fields::{self, Fields, Place};
-use super::scenes::{LiveScene, SAMPLES, SIDE, Toggle};
+use super::scenes::{LiveScene, SAMPLES, SIDE, TIMED_SAMPLES, Toggle};
 use super::slider::{Moves, Slider};
 use super::store::Store;
 use lapidary_plan::{Decisions, ladder::Ladder};
@@ -105,7 +105,7 @@ pub fn manifest(live: &LiveScene, store: &mut Store) -> Result<Manifest, LiveErr
         scene: live.scene,
         side: SIDE,
         samples: SAMPLES,
-        timed: json!({"side": live.timed_side, "samples": 1}),
+        timed: json!({"side": live.timed_side, "samples": TIMED_SAMPLES}),
         version: env!("CARGO_PKG_VERSION"),
         rung: live.rungs[0],
         ladder: live.ladder,
@@ -199,7 +199,7 @@ fn rung(
     for (key, made) in made {
         frames.insert(key, store_frame(store, made, &moved)?);
     }
-    let timed = Settings { width: live.timed_side, height: live.timed_side, samples: 1, ..base_settings };
+    let timed = Settings { width: live.timed_side, height: live.timed_side, samples: TIMED_SAMPLES, ..base_settings };
     let timed = store_frame(store, make(scene, &timed)?, &BTreeSet::new())?;
     let step = Ladder::committed(live.technique).and_then(|ladder| ladder.step(name));
     Ok(Rung {

@@ -1,7 +1,7 @@
 //! The part of a page that draws a scene live: its controls, and the scripts that run them.
 
 use super::super::templates::{self, Markup};
-use super::scenes::{LiveScene, SAMPLES, SIDE};
+use super::scenes::{LiveScene, SAMPLES, SIDE, TIMED_SAMPLES};
 use super::{LiveError, poster};
 use lapidary_scene::Scene;
 use serde::Serialize;
@@ -19,6 +19,7 @@ struct Shown<'a> {
     summary: &'a str,
     side: u32,
     timed_side: u32,
+    timed_samples: u32,
     samples: u32,
     poster: String,
     command: String,
@@ -73,6 +74,7 @@ pub fn section(live: &LiveScene) -> Result<Markup, LiveError> {
         summary: live.summary,
         side: SIDE,
         timed_side: live.timed_side,
+        timed_samples: TIMED_SAMPLES,
         samples: SAMPLES,
         poster: format!("../{}", poster(live)),
         command: format!("./cook render {} --rung {} --samples {SAMPLES}", live.scene, live.rungs[0]),

@@ -12,6 +12,8 @@ use std::cmp::Ordering;
 pub const SIDE: u32 = 512;
 /// Samples along each side of a pixel.
 pub const SAMPLES: u32 = 3;
+/// Those of the frames that the ladder timed.
+pub const TIMED_SAMPLES: u32 = 1;
 
 /// A scene that a page draws live.
 #[derive(Debug)]
@@ -24,13 +26,11 @@ pub struct LiveScene {
     pub summary: &'static str,
     /// The rungs to choose from; the first is drawn at first.
     pub rungs: &'static [&'static str],
-    /// The rung to compare with at first.
-    pub other: &'static str,
     /// Name of the plot that a measured time is drawn into.
     pub ladder: &'static str,
     /// The ladder that holds the rungs' errors and times.
     pub technique: Technique,
-    /// Width and height in pixels of the frames that the ladder timed, of one sample each.
+    /// Width and height in pixels of the frames that the ladder timed.
     pub timed_side: u32,
     /// Effects to switch.
     pub toggles: &'static [Toggle],
@@ -121,9 +121,8 @@ pub const SCENES: [LiveScene; 5] = [
         scene: "brilliant",
         title: "A diamond, live",
         summary: "Turn the stone, move its index of refraction from water’s to beyond diamond’s, and see what each rung of the ladder \
-            leaves out: move the wipe between two of them.",
+            leaves out: choose a second one beside it and move the wipe.",
         rungs: STONE_RUNGS,
-        other: "proxy-4+tracker",
         ladder: "convex",
         timed_side: 256,
         technique: Technique::Convex,
@@ -136,7 +135,6 @@ pub const SCENES: [LiveScene; 5] = [
         title: "A ruby, live",
         summary: "The same cut in corundum, whose colour is absorbed on the way inside: long ways are darker than short ones.",
         rungs: STONE_RUNGS,
-        other: "surface",
         ladder: "convex",
         timed_side: 256,
         technique: Technique::Convex,
@@ -147,10 +145,9 @@ pub const SCENES: [LiveScene; 5] = [
     LiveScene {
         scene: "skin_ring",
         title: "A ring of skin, live",
-        summary: "Light creeps round what is curved: make the free path longer and watch the shadow’s edge soften, red first. Lambert’s law \
-            on the other side of the wipe knows none of it.",
+        summary: "Light creeps round what is curved: make the free path longer and watch the shadow’s edge soften, red first. Choose \
+            lambert beside it and move the wipe: that law knows none of it.",
         rungs: &["drift", "accurate", "cheap", "wrap", "lambert"],
-        other: "lambert",
         ladder: "cdrf",
         timed_side: 512,
         technique: Technique::Cdrf,
@@ -168,7 +165,6 @@ pub const SCENES: [LiveScene; 5] = [
         summary: "Light takes the cheapest way from the sun to each voxel, and is found anew whenever the sun or the stone changes; turning \
             the bunny needs none of it.",
         rungs: &["godunov-64", "godunov-32", "diffusion-64", "lambert-shadowed", "lambert"],
-        other: "lambert-shadowed",
         ladder: "translucent",
         timed_side: 512,
         technique: Technique::Translucent,
@@ -182,7 +178,6 @@ pub const SCENES: [LiveScene; 5] = [
         summary: "Light diffuses through veined jade on a grid, solved anew whenever the sun or the stone changes: turn the sun behind the \
             dragon and let it shine through claws and crest.",
         rungs: &["diffusion-64", "diffusion-32", "godunov-64", "lambert-shadowed"],
-        other: "lambert-shadowed",
         ladder: "translucent",
         timed_side: 512,
         technique: Technique::Diffusion,

@@ -5,6 +5,12 @@ use crate::gallery_pages::browser::SOON;
 use lapidary_cook::gallery::live::{SCENES, SIDE};
 use serde_json::json;
 
+/// The middle of the picture in the window.
+const PLACE: &str = "(() => {
+    const box = document.querySelector('.live canvas').getBoundingClientRect();
+    return [box.left + box.width / 2, box.top + box.height / 2];
+})()";
+
 /// The least share of pixels that a control must change.
 const LEAST: f64 = 0.001;
 
@@ -171,24 +177,28 @@ fn no_control_slides_under_a_pointer() {
     page.click(".live-command .copy").expect("a button");
     page.wait_for("document.querySelector('.live-command .copy').textContent === 'Copied'", SOON).expect("copied");
     assert_eq!(page.evaluate(width).expect("a width"), wide, "a command is copied");
+    // A link keeps the focus while what it leads to stays the same.
+    let focused = "document.activeElement.closest('.live-recipes a')?.textContent";
+    page.evaluate("document.querySelector('.live-recipes a').focus()").expect("the focus");
+    let recipe = page.evaluate(focused).expect("a link");
+    assert!(recipe.is_string(), "{recipe}");
+    set(&mut page, "state.steps.index = 3");
+    assert_eq!(page.evaluate(focused).expect("a link"), recipe, "another picture");
     // The command is whole.
     let cut = "Array.from(document.querySelectorAll('.live-command code')).some((code) => code.scrollWidth > code.clientWidth + 1)";
     assert_eq!(page.evaluate(cut).expect("a comparison"), false);
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
-/// The wheel is the page's until the picture is clicked, and again after Escape; with Ctrl it is the picture's.
+/// The wheel is the page's until the picture is clicked, and again after Escape. With Ctrl too, by which one enlarges
+/// the page. Other buttons are the browser's.
 #[test]
 fn the_wheel_is_the_pages_until_a_click() {
     let Some(mut page) = running("brilliant", "") else { return };
     page.run("document.querySelector('.live canvas').scrollIntoView({ block: 'center', behavior: 'instant' });")
         .expect("in view");
     let turned = |page: &mut lapidary_browser::Page, modifiers: u32| {
-        let place = "(() => {
-            const box = document.querySelector('.live canvas').getBoundingClientRect();
-            return [box.left + box.width / 2, box.top + box.height / 2];
-        })()";
-        let place = page.evaluate(place).expect("a place");
+        let place = page.evaluate(PLACE).expect("a place");
         let wheel = json!({ "type": "mouseWheel", "x": place[0], "y": place[1], "deltaX": 0, "deltaY": 40, "modifiers": modifiers });
         page.call("Input.dispatchMouseEvent", wheel).expect("turned");
     };
@@ -203,9 +213,31 @@ fn the_wheel_is_the_pages_until_a_click() {
         page.wait_for(&format!("gallery.live.state.distance > {}", before[1]), SOON).expect(why);
     };
     const CTRL: u32 = 2;
-    further(&mut page, CTRL, "with Ctrl");
+    let listen =
+        "addEventListener('wheel', ({ ctrlKey, defaultPrevented }) => (window.wheel = [ctrlKey, defaultPrevented]));";
+    page.run(listen).expect("listens");
+    let is_the_browsers = |page: &mut lapidary_browser::Page, why: &str| {
+        page.run("window.wheel = null;").expect("reset");
+        turned(page, CTRL);
+        assert_eq!(page.wait_for("window.wheel", SOON).expect(why), json!([true, false]), "{why}");
+    };
+    let before = page.evaluate("gallery.live.state").expect("a state");
+    is_the_browsers(&mut page, "with Ctrl");
+    for (button, buttons) in [("right", 2), ("middle", 4)] {
+        let place = page.evaluate(PLACE).expect("a place");
+        for (kind, moved) in [("mousePressed", 0.0), ("mouseMoved", 30.0), ("mouseReleased", 30.0)] {
+            let x = place[0].as_f64().expect("a number") + moved;
+            let event = json!({
+                "type": kind, "x": x, "y": place[1], "button": button, "buttons": buttons, "clickCount": 1,
+            });
+            page.call("Input.dispatchMouseEvent", event).expect("pressed");
+        }
+        is_the_browsers(&mut page, button);
+    }
+    assert_eq!(page.evaluate("gallery.live.state").expect("a state"), before);
     page.click(".live canvas").expect("clicked");
     further(&mut page, 0, "after a click");
+    further(&mut page, CTRL, "with Ctrl after a click");
     page.press("Escape").expect("pressed");
     let before = page.evaluate(states).expect("states");
     turned(&mut page, 0);
@@ -234,9 +266,7 @@ fn the_eye_is_moved() {
         assert_ne!(start[part], by_keys[part], "part {part}: {start} {by_keys}");
     }
     assert!(differing(&before, &shown(&mut page)) > 0.01);
-    let middle = page
-        .evaluate("(() => { const box = document.querySelector('.live canvas').getBoundingClientRect(); return [box.left + box.width / 2, box.top + box.height / 2]; })()")
-        .expect("a box");
+    let middle = page.evaluate(PLACE).expect("a place");
     let [x, y] = [0, 1].map(|part| middle[part].as_f64().expect("a number"));
     page.drag([x, y], [x + 50.0, y]).expect("dragged");
     page.run("await gallery.live.set({});").expect("drawn");
@@ -248,6 +278,121 @@ fn the_eye_is_moved() {
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
+/// One finger turns sideways and scrolls up and down; two turn and zoom. None takes the wheel.
+#[test]
+fn fingers_turn_zoom_and_scroll() {
+    if !super::runs_whole("fingers_turn_zoom_and_scroll") {
+        return;
+    }
+    let Some(mut page) = running("brilliant", "") else { return };
+    page.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true, "maxTouchPoints": 2 })).expect("a phone");
+    page.run("document.querySelector('.live canvas').scrollIntoView({ block: 'center', behavior: 'instant' });")
+        .expect("in view");
+    let states = "(({ azimuth, polar, distance }) => [azimuth, polar, distance, scrollY])(gallery.live.state)";
+    // Fingers go from some places to others around the picture's middle, in steps as a hand does.
+    let mut dragged = |from: &[[f64; 2]], to: &[[f64; 2]]| {
+        let before = page.evaluate(states).expect("states");
+        let middle = page.evaluate(PLACE).expect("a place");
+        let [x, y] = [0, 1].map(|part| middle[part].as_f64().expect("a number"));
+        let mut touch = |kind: &str, share: Option<f64>| {
+            let points = from.iter().zip(to).zip(0..).map(|((from, to), id)| {
+                let at = |part: usize| from[part] + share.unwrap_or(0.0) * (to[part] - from[part]);
+                json!({ "x": x + at(0), "y": y + at(1), "id": id })
+            });
+            let points: Vec<_> = if share.is_some() { points.collect() } else { Vec::new() };
+            page.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).expect(kind);
+        };
+        touch("touchStart", Some(0.0));
+        for step in 1..=5 {
+            touch("touchMove", Some(f64::from(step) / 5.0));
+        }
+        touch("touchEnd", None);
+        page.run("await gallery.live.set({});").expect("drawn");
+        let held = page.evaluate("document.querySelector('.live canvas').classList.contains('held')").expect("a class");
+        assert_eq!(held, false, "{from:?}");
+        let after = page.evaluate(states).expect("states");
+        [0, 1, 2, 3].map(|part| after[part].as_f64().expect("a number") - before[part].as_f64().expect("a number"))
+    };
+    let [azimuth, _, distance, scrolled] = dragged(&[[-60.0, 0.0]], &[[60.0, 0.0]]);
+    assert!(azimuth < -20.0 && distance == 0.0 && scrolled == 0.0, "sideways: {azimuth} {distance} {scrolled}");
+    let [_, polar, distance, scrolled] = dragged(&[[-20.0, -40.0], [20.0, -40.0]], &[[-80.0, 40.0], [80.0, 40.0]]);
+    assert!(polar < -20.0 && distance < -0.5 && scrolled == 0.0, "two: {polar} {distance} {scrolled}");
+    let [azimuth, polar, distance, scrolled] = dragged(&[[0.0, 60.0]], &[[0.0, -60.0]]);
+    assert!(scrolled > 50.0, "up: {scrolled}");
+    assert!([azimuth, polar, distance] == [0.0; 3], "up: {azimuth} {polar} {distance}");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// Begins a measurement, for statements that go on in its midst.
+const MEASURES: &str = "
+    const [note, time] = ['.live-note', '.live-time'].map((of) => document.querySelector(of));
+    const measured = gallery.live.measure();
+    while (note.textContent !== 'Measuring …') await new Promise(requestAnimationFrame);";
+
+/// A picture does not stand still for a measurement: what is changed stops it, which is said.
+#[test]
+fn a_change_stops_a_measurement() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    let before = shown(&mut page);
+    let moved = format!(
+        "{MEASURES}
+        const submit = GPUQueue.prototype.submit;
+        let runs = 0;
+        GPUQueue.prototype.submit = function (...all) {{
+            runs += 1;
+            return submit.apply(this, all);
+        }};
+        const input = document.querySelector('#live-index');
+        input.value = 0;
+        input.dispatchEvent(new Event('input', {{ bubbles: true }}));
+        const said = [note.textContent];
+        await measured;
+        const more = runs;
+        await gallery.live.set({{}});
+        said.push(note.textContent);
+        return [said, time.textContent, more];"
+    );
+    let answer = page.run(&moved).expect("moved");
+    let stopped = "Something was changed, so the measurement stopped.";
+    assert_eq!((&answer[0], &answer[1]), (&json!([stopped, stopped]), &json!("")));
+    // The run that is under way ends, with what reads its time.
+    assert!(answer[2].as_u64().is_some_and(|more| more <= 2), "{answer}");
+    assert!(differing(&before, &shown(&mut page)) > LEAST, "the picture stands still");
+    assert_eq!(page.evaluate("document.querySelectorAll('svg.plot .visitor').length").expect("a count"), 0);
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// A device that is lost, or draws no picture, is not timed, and what was said of it stays.
+#[test]
+fn a_faulty_device_is_not_timed() {
+    let Some(mut page) = running("brilliant", "") else { return };
+    let lost = format!(
+        "{MEASURES}
+        const {{ device }} = gallery.live;
+        device.destroy();
+        await measured;
+        while (gallery.live.device === device || note.textContent) {{
+            if (note.textContent.includes('Measuring')) throw new Error('it measures on');
+            await new Promise(requestAnimationFrame);
+        }}
+        return time.textContent;"
+    );
+    assert_eq!(page.run(&lost).expect("another device"), "");
+    let fails = "
+        const error = new GPUValidationError('broken on purpose');
+        gallery.live.device.dispatchEvent(new GPUUncapturedErrorEvent('uncapturederror', { error }));
+        gallery.live.set({});
+        await gallery.live.measure();
+        const [note, time] = ['.live-note', '.live-time'].map((of) => document.querySelector(of));
+        return [note.textContent, note.matches('.failed'), time.textContent];";
+    let said = "Broken on purpose. The picture above is the one that the renderer draws.";
+    assert_eq!(page.run(fails).expect("a sentence"), json!([said, true, ""]));
+    // Another one has another chance.
+    page.click(".live-run").expect("a button");
+    page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("it runs again");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
 /// The time is the visitor's own, and stands in the plot.
 #[test]
 fn a_measured_time_is_drawn_into_the_plot() {
@@ -255,6 +400,8 @@ fn a_measured_time_is_drawn_into_the_plot() {
         return;
     }
     let Some(mut page) = running("brilliant", "") else { return };
+    // One that was stopped is in no other's way.
+    page.run(&format!("{MEASURES} gallery.live.set({{}});")).expect("stopped");
     page.click("[data-do=time]").expect("a button");
     let text = page.wait_for("document.querySelector('.live-time').textContent", super::DRAWN).expect("a time");
     let text = text.as_str().expect("a text");

@@ -12,6 +12,19 @@ const CHECK: Duration = Duration::from_secs(100);
 /// Unless the suite is run whole, one function in this many is checked in its page.
 const ONE_IN: u64 = 25;
 
+/// What ends a line of WGSL.
+const LINE_ENDS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
+
+/// From here on each check waits in `waiting` for the test's answer, `holds` or another.
+const ANSWERED: &str = "
+    window.waiting = [];
+    window.holds = {
+        rows: 1, held: 1, messages: [], adapter: 'a GPU', worst: { label: 'input 0', holds: true, inputs: [], parts: [] },
+    };
+    gallery.check = (name, text) => new Promise((resolve, reject) => waiting.push({ name, text, resolve, reject }));";
+/// Time for a task that the page may have queued.
+const SETTLE: &str = "await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)));";
+
 /// Opens the editor of a module at a function.
 fn editing(page: &mut Page, function: &str) {
     page.click(".check-open").expect("a button");
@@ -99,7 +112,8 @@ fn what_is_changed_but_not_checked_is_named() {
     assert!(right.starts_with("All ") && !right.contains("changed"), "{right}");
     let broken = ["return coefficients.x + (", "return coefficients.y + ("];
     edit(&mut page, broken[0], broken[1]);
-    let left = "dispersion_cauchy is changed too, but not checked: choose it to check it.";
+    // What is checked is not: no "too".
+    let left = "dispersion_cauchy is changed, but not checked: choose it to check it.";
     let other = checked(&mut page);
     assert!(other.starts_with(left), "{other}");
     assert!(
@@ -135,6 +149,218 @@ fn what_is_changed_but_not_checked_is_named() {
     page.click(".check-restore").expect("a button");
     let again = checked(&mut page);
     assert!(again.starts_with("All ") && !again.contains("changed"), "{again}");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// What is changed is found by WGSL's rules: its comments nest, its lines have seven ends, its names any script.
+#[test]
+fn changes_are_found_by_the_rules_of_wgsl() {
+    let Some(mut page) = opened("modules/dispersion.html") else { return };
+    page.run(ANSWERED).expect("replaced");
+    page.run("gallery.check = async () => holds;").expect("replaced");
+    editing(&mut page, "dispersion_sellmeier");
+    let (cauchy, sellmeier) = ("return coefficients.x + (", "fn dispersion_sellmeier(");
+    let mut same = vec![
+        (cauchy, format!("/* a /* b */ c */ {cauchy}")),
+        (cauchy, format!("/* /* a */ {{ */ {cauchy}")),
+        (cauchy, format!("/* // */ {cauchy}")),
+        (cauchy, format!("/* //* */ {{ */ {cauchy}")),
+        (cauchy, format!("// /*\n{cauchy}")),
+        (cauchy, "return coefficients.x\u{200e}\u{85}+ (".to_owned()),
+        // Neither the suffix of 1.0f nor the member of coefficients.x.
+        (sellmeier, format!("fn f() {{}}\nconst x = 1.0f;\n{sellmeier}")),
+    ];
+    let mut other =
+        vec![(cauchy, "return coefficients.y + (".to_owned()), (cauchy, "return coefficients.x */* + */ (".to_owned())];
+    for end in LINE_ENDS {
+        same.push((cauchy, format!("// a{end}{cauchy}")));
+        other.push((cauchy, format!("// a{end}let b = 1.0f;{cauchy}")));
+    }
+    let left = "dispersion_cauchy is changed, but not checked";
+    for (changed, cases) in [(false, same), (true, other)] {
+        for (from, to) in cases {
+            edit(&mut page, from, &to);
+            let said = checked(&mut page);
+            assert_eq!((said.starts_with(left), said.contains("changed")), (changed, changed), "{to:?}: {said}");
+            page.click(".check-restore").expect("a button");
+        }
+    }
+    // The text as it was, in a comment below.
+    page.run(
+        "const field = document.querySelector('.check-text');
+        const [own] = /fn dispersion_cauchy[^]*?\\n}/.exec(field.value);
+        field.value = field.value.replace(own, `${own.replace('coefficients.x', 'coefficients.y')} /* /* old */ ${own} */`);
+        field.dispatchEvent(new Event('input', { bubbles: true }));",
+    )
+    .expect("changed");
+    let hidden = checked(&mut page);
+    assert!(hidden.starts_with(left), "{hidden}");
+    page.click(".check-restore").expect("a button");
+    // A name that is not ASCII.
+    let use_of = |page: &mut Page, name: &str| edit(page, "max(1.0f + material", &format!("max({name} + material"));
+    edit(&mut page, sellmeier, &format!("const Δ = 1.0f;\n{sellmeier}"));
+    use_of(&mut page, "Δ");
+    assert!(!checked(&mut page).contains("not checked"));
+    edit(&mut page, "Δ = 1.0f", "Δ = 1.5f");
+    editing_other(&mut page, "dispersion_abbe");
+    let through = checked(&mut page);
+    assert!(through.starts_with("dispersion_sellmeier is changed, but not checked"), "{through}");
+    page.click(".check-restore").expect("a button");
+    // A chain of constants.
+    let chain: String = (1..20_000).map(|at| format!("const C{at} = C{};", at - 1)).collect();
+    edit(&mut page, sellmeier, &format!("const C0 = 1.0f;{chain}\n{sellmeier}"));
+    use_of(&mut page, "C19999");
+    let long = checked(&mut page);
+    assert!(long.starts_with("dispersion_sellmeier is changed, but not checked"), "{long}");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// What a check found is shown only with the text that it ran.
+#[test]
+fn a_result_of_another_text_is_not_shown() {
+    let Some(mut page) = opened("modules/dispersion.html") else { return };
+    page.run(ANSWERED).expect("replaced");
+    editing(&mut page, "dispersion_sellmeier");
+    let waits = |page: &mut Page| page.wait_for("waiting.length === 1", SOON).expect("a check");
+    let answer = |page: &mut Page, how: &str| page.run(&format!("waiting.shift().{how}; {SETTLE}")).expect("an answer");
+    let shown = "(() => {
+        const parts = ['.check-result', '.check-wrong', '.check-run[aria-disabled]'];
+        const [result, wrong, busy] = parts.map((part) => document.querySelector(part));
+        return [result.textContent, wrong, busy];
+    })()";
+    let nothing = json!(["", null, null]);
+    let wrong = "resolve({
+        ...holds, held: 0, worst: null, messages: [{ type: 'error', line: 3, column: 1, text: 'no' }],
+    })";
+    // As it was, an error is shown.
+    page.click(".check-run").expect("a button");
+    waits(&mut page);
+    answer(&mut page, wrong);
+    assert_eq!(page.evaluate("document.querySelector('.check-wrong').textContent").expect("a mark"), "3");
+    for how in [wrong, "reject(new Error('lost'))"] {
+        for meanwhile in ["type", ".check-restore", ".check-open"] {
+            edit(&mut page, "1.0f", "1.00f");
+            page.click(".check-run").expect("a button");
+            waits(&mut page);
+            match meanwhile {
+                "type" => edit(&mut page, "1.00f", "1.000f"),
+                button => page.click(button).expect("a button"),
+            }
+            answer(&mut page, how);
+            assert_eq!(page.evaluate(shown).expect("a page"), nothing, "{meanwhile}, {how}");
+            if meanwhile == ".check-open" {
+                editing(&mut page, "dispersion_sellmeier");
+            }
+            page.click(".check-restore").expect("a button");
+        }
+    }
+    // What held did hold, though another function is chosen by now.
+    edit(&mut page, "max(1.0f + material", "max(1.5f + material");
+    page.click(".check-run").expect("a button");
+    waits(&mut page);
+    editing_other(&mut page, "dispersion_cauchy");
+    answer(&mut page, "resolve(holds)");
+    assert_eq!(page.evaluate(shown).expect("a page"), nothing);
+    page.click(".check-run").expect("a button");
+    waits(&mut page);
+    answer(&mut page, "resolve(holds)");
+    let said = page.evaluate("document.querySelector('.check-result').textContent").expect("words");
+    assert!(said.as_str().is_some_and(|said| said.starts_with("All 1 rows hold for dispersion_cauchy")), "{said}");
+    // A press while a check runs is not lost: the text of that moment comes next.
+    page.click(".check-run").expect("a button");
+    waits(&mut page);
+    edit(&mut page, "max(1.5f + material", "max(1.75f + material");
+    page.click(".check-run").expect("a button");
+    assert_eq!(page.evaluate("waiting.length").expect("a count"), 1);
+    answer(&mut page, "resolve(holds)");
+    assert_eq!(page.evaluate("waiting[0].text.includes('max(1.75f')").expect("a text"), true);
+    answer(&mut page, "resolve(holds)");
+    let said = page.evaluate("document.querySelector('.check-result').textContent").expect("words");
+    assert!(said.as_str().is_some_and(|said| said.starts_with("dispersion_sellmeier is changed, ")), "{said}");
+    // A closed editor offers no check of a text that nobody sees.
+    page.click(".check-open").expect("a button");
+    let closed =
+        "[document.querySelector('.check-editor').hidden, document.querySelector('.check-result').childElementCount]";
+    assert_eq!(page.evaluate(closed).expect("a page"), json!([true, 0]));
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// A function's own link opens the editor there, each time with the caret in the text.
+#[test]
+fn a_link_opens_the_editor_in_the_text() {
+    let Some(mut page) = opened("modules/dispersion.html") else { return };
+    let link = |name: &str| format!("a[data-check=dispersion_{name}]");
+    // In a tab of its own, nothing opens here.
+    for key in ["ctrlKey", "metaKey", "shiftKey", "altKey"] {
+        let click = format!(
+            "let followed;
+            const seen = (event) => {{ followed = !event.defaultPrevented; event.preventDefault(); }};
+            addEventListener('click', seen, {{ once: true }});
+            const click = new MouseEvent('click', {{ bubbles: true, cancelable: true, {key}: true }});
+            document.querySelector('{}').dispatchEvent(click);
+            {SETTLE}
+            return [followed, document.querySelector('.check-editor').hidden, location.hash];",
+            link("abbe")
+        );
+        assert_eq!(page.run(&click).expect("a click"), json!([true, true, ""]), "{key}");
+    }
+    for name in ["cauchy", "abbe", "abbe"] {
+        page.click(&link(name)).expect("a link");
+        let place = format!(
+            "{SETTLE}
+            const {{ selectionStart, value }} = document.querySelector('.check-text');
+            const {{ top }} = document.querySelector('.check-field').getBoundingClientRect();
+            return [document.activeElement.id, value.slice(selectionStart).startsWith('fn dispersion_{name}('),
+                document.querySelector('.check-function').value, location.hash, top > 0 && top < innerHeight];"
+        );
+        page.wait_for("!document.querySelector('.check-editor').hidden", SOON).expect("the editor opens");
+        let expected = json!(["check-text", true, format!("dispersion_{name}"), "#edit-and-check", true]);
+        assert_eq!(page.run(&place).expect("a place"), expected, "{name}");
+    }
+    // One step back is the page as it was.
+    page.run("history.back()").expect("a step");
+    page.wait_for("location.hash === ''", SOON).expect("back");
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// A result that comes late does not pull back a reader who has gone on; else it comes into view.
+#[test]
+fn a_late_result_leaves_the_reader_where_they_are() {
+    let Some(mut page) = opened("modules/dispersion.html") else { return };
+    page.run(ANSWERED).expect("replaced");
+    let asked = |page: &mut Page, answers: &str, before: &str, how: &str| {
+        page.wait_for(&format!("{answers}.length === 1"), SOON).expect("a wait");
+        let run = format!(
+            "{before};
+            const from = scrollY;
+            {answers}.shift().{how};
+            {SETTLE}
+            const {{ bottom }} = document.querySelector('.check-result p').getBoundingClientRect();
+            return [scrollY === from, bottom > 0 && bottom <= innerHeight];"
+        );
+        page.run(&run).expect("an answer")
+    };
+    // The text does not load.
+    let load = "window.loads = []; window.load = gallery.load;
+        gallery.load = () => new Promise((resolve, reject) => loads.push({ resolve, reject }));";
+    page.run(load).expect("replaced");
+    for (before, expected) in [("", json!(true)), ("scrollTo(0, 0)", json!(false))] {
+        page.click("a[data-check]").expect("a link");
+        let seen = asked(&mut page, "loads", before, "reject(new Error('not there'))");
+        assert_eq!(seen[1], expected, "{before}");
+        assert!(before.is_empty() || seen[0] == true, "{before}");
+    }
+    page.run("gallery.load = load").expect("put back");
+    editing(&mut page, "dispersion_sellmeier");
+    let at_the_end =
+        "scrollTo(0, scrollY + document.querySelector('.check-field').getBoundingClientRect().bottom - innerHeight)";
+    for (before, moves) in [(at_the_end, true), ("scrollTo(0, 0)", false), ("document.activeElement.blur()", false)] {
+        page.run("document.querySelector('.check-text').focus()").expect("focused");
+        page.run(at_the_end).expect("scrolled");
+        page.press("Control+Enter").expect("a key");
+        let seen = asked(&mut page, "waiting", before, "resolve(holds)");
+        assert_eq!(seen, json!([!moves, moves]), "{before}");
+    }
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
