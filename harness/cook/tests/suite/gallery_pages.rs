@@ -362,13 +362,14 @@ fn loaded_sources_compile() {
     assert!(names.len() >= least, "{} sources, of {least} modules, recipes and rungs", names.len());
 }
 
-/// A handful of pages: one of each folder, and some more by the suite's seed.
+/// A handful of pages: one of each folder, every live page, whose controls differ, and some more by the suite's seed.
 fn some_pages() -> Vec<&'static str> {
     let site = site();
     let mut chosen: BTreeSet<&str> = BTreeSet::from(["index.html"]);
     for folder in ["guides/", "live/", "modules/", "recipes/", "techniques/"] {
         chosen.insert(site.first(folder));
     }
+    chosen.extend(site.pages.keys().map(String::as_str).filter(|path| path.starts_with("live/")));
     chosen.extend(crate::sampled(site.pages.keys().map(String::as_str), ONE_IN));
     chosen.into_iter().collect()
 }

@@ -124,8 +124,8 @@ pub const DISPERSION_STRENGTH: Slider = Slider {
 /// Absorption inside a clear stone, of the colour that is absorbed most; the others in proportion.
 pub const ABSORPTION: Slider = Slider {
     name: "absorption",
-    label: "Absorption of the colour absorbed most",
-    unit: "per radius of the stone",
+    label: "Absorption of the colour absorbed most, per radius of the stone",
+    unit: "",
     range: [0.05, 5.0],
     relative: true,
     logarithmic: true,
