@@ -129,6 +129,7 @@
       this.function.value = name;
       try {
         this.original ??= await gallery.load(`source/${this.module}`);
+        this.declared ??= declared(this.original);
       } catch (error) {
         return this.fail(error);
       }
@@ -202,8 +203,9 @@
       const asked = () => name === this.name && text === this.text.value && !this.editor.hidden;
       try {
         const found = await gallery.check(name, text);
-        if (found.held === found.rows) this.held.set(name, whole(name, declared(text)));
-        if (asked()) this.report(name, text, found);
+        const now = declared(text);
+        if (found.held === found.rows) this.held.set(name, whole(name, now));
+        if (asked()) this.report(name, now, found);
       } catch (error) {
         if (asked()) this.fail(error);
       } finally {
@@ -230,8 +232,8 @@
     }
 
     /** What is changed and did not hold in a check of its own, as paragraphs: a check runs one function of the text. */
-    unchecked(name, text) {
-      const [now, before] = [text, this.original].map(declared);
+    unchecked(name, now) {
+      const before = this.declared;
       const offered = Array.from(this.function.options, ({ value }) => value);
       const open = offered.filter((of) => of !== name && whole(of, now) !== whole(of, before) && this.held.get(of) !== whole(of, now));
       const [direct, through] = [true, false].map((is) => open.filter((of) => (now.get(of) !== before.get(of)) === is));
@@ -266,7 +268,7 @@
       return paragraph;
     }
 
-    report(name, text, { rows, held, worst, messages, adapter }) {
+    report(name, now, { rows, held, worst, messages, adapter }) {
       const errors = messages.filter(({ type }) => type === 'error');
       this.number([...new Set(errors.map(({ line }) => line).filter(Boolean))]);
       const said = messages.length > 0 ? [this.listed(messages)] : [];
@@ -275,12 +277,12 @@
         return;
       }
       const all = held === rows;
-      const left = this.unchecked(name, text);
+      const left = this.unchecked(name, now);
       if (!all) {
         const fails = `${rows - held} of ${rows} rows fail for ${name} on ${adapter}; ${held === 0 ? 'none holds' : `${held} ${held === 1 ? 'holds' : 'hold'}`}.`;
         return this.tell(made('p', 'check-fails', fails), ...left, ...said, this.worst(worst));
       }
-      const same = left.length > 0 && whole(name, declared(text)) === whole(name, declared(this.original)) ? ' It is as in the cookbook.' : '';
+      const same = left.length > 0 && whole(name, now) === whole(name, this.declared) ? ' It is as in the cookbook.' : '';
       const holds = made('p', 'check-holds', `All ${rows} rows hold for ${name} on ${adapter}.${same}`);
       // First what the rows say nothing about, so that it does not read as if all held.
       this.tell(...left, holds, ...said, this.worst(worst));

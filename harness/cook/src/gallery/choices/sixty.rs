@@ -62,7 +62,7 @@ pub fn sixty() -> Sixty {
     let holding = rows.iter().filter(|row| row.3 <= SIXTIETH);
     let nearest = holding.min_by(|a, b| a.2.total_cmp(&b.2)).expect("a rung that holds");
     let default = stones.technique.rung(Quality::default()).to_string();
-    let scattering = || KINDS.iter().filter(|kind| kind.report != stones.report);
+    let scattering = || KINDS.iter().filter(|kind| !OnGpu::of(kind).fills);
     let longest = |kind: &'static Kind| {
         of_kind(kind).into_iter().filter_map(|choice| OnGpu::of(kind).ms(&choice.rung)).fold(0.0, f64::max)
     };
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn scattering_bodies_were_measured_at_one_size() {
         let sizes: Vec<String> =
-            KINDS.iter().filter(|kind| kind.report != "gem").map(|kind| heading(kind).gpu_size).collect();
+            KINDS.iter().filter(|kind| !OnGpu::of(kind).fills).map(|kind| heading(kind).gpu_size).collect();
         assert!(sizes.len() > 1 && sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
     }
 }
