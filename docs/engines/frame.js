@@ -95,12 +95,12 @@ export class Frame {
   }
 
   /** Milliseconds that the device takes for all passes, the median of some runs. If all together take over a second,
-   * five are enough, and three if one alone does. It goes by the device's own clock if that has the feature
-   * `timestamp-query`, by this page's otherwise. */
-  async time(runs = 9) {
+   * five are enough, and three if one alone does; a signal ends it after the run that is under way. It goes by the
+   * device's own clock if that has the feature `timestamp-query`, by this page's otherwise. */
+  async time(runs = 9, signal) {
     const clock = this.device.features.has('timestamp-query') ? this.#clock() : null;
     const times = [];
-    for (const start = performance.now(); times.length < runs; ) {
+    for (const start = performance.now(); times.length < runs && !signal?.aborted; ) {
       const enough = times.some((time) => time > 1000) ? 3 : 5;
       if (times.length >= enough && performance.now() - start > 1000) break;
       await this.device.queue.onSubmittedWorkDone();

@@ -307,8 +307,6 @@ const AWAKE = 500;
 /** Browsers round a device's clock to tenths of milliseconds; shorter frames are timed by many, this long together. */
 const [SHORT, LONG_ENOUGH] = [2, 20];
 
-const median = (numbers) => numbers.sort((a, b) => a - b)[numbers.length >> 1];
-
 /** Milliseconds that a frame takes with all its passes. A signal stops it after the run that is under way. */
 async function timeOf(frame, signal) {
   const done = () => frame.device.queue.onSubmittedWorkDone();
@@ -317,15 +315,8 @@ async function timeOf(frame, signal) {
     frame.draw();
     await done();
   }
-  const runs = [];
-  for (const begin = performance.now(); runs.length < RUNS; ) {
-    // Of slow frames few are enough, as in `Frame.time`; that could not be stopped between its runs.
-    const enough = runs.some((ms) => ms > 1000) ? 3 : 5;
-    if (runs.length >= enough && performance.now() - begin > 1000) break;
-    signal.throwIfAborted();
-    runs.push(await frame.time(1));
-  }
-  const alone = median(runs);
+  const alone = await frame.time(RUNS, signal);
+  signal.throwIfAborted();
   if (alone >= SHORT) return alone;
   const means = [];
   for (const count = Math.ceil(LONG_ENOUGH / Math.max(alone, 0.05)); means.length < RUNS; ) {
@@ -335,7 +326,7 @@ async function timeOf(frame, signal) {
     await done();
     means.push((performance.now() - begin) / count);
   }
-  return median(means);
+  return means.sort((a, b) => a - b)[means.length >> 1];
 }
 
 /** Times the frames of rungs that are shown, of the ladder's size and samples and as at the start. */
