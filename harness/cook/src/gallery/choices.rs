@@ -1,21 +1,19 @@
 //! The rungs that the qualities choose, as the planner has them, with their figures on two devices.
 
-mod on_gpu;
 mod sixty;
 
-use super::ladder::{KINDS, Kind};
+use super::ladder::{CPU, KINDS, Kind, OnGpu};
 use super::templates;
 use lapidary_plan::ladder::{SAME_TIME, Step};
 use lapidary_plan::{Quality, Rung};
-use on_gpu::OnGpu;
 use serde::Serialize;
 use sixty::Sixty;
 
-/// The device of the committed ladders.
-const CPU: &str = "lavapipe on 2 CPU cores";
-
 /// What a rung is for that is better than that of `fast` on the GPU.
 const ON_A_GPU: &str = "fast, on a GPU";
+
+/// What a rung is for that is the nearest to the truth which holds 60 frames a second on the GPU.
+const IN_A_SIXTIETH: &str = "60 frames a second, on the measured GPU";
 
 /// What the errors of a measure are, in words.
 const GLOSSES: [(&str, &str); 3] = [
@@ -111,7 +109,6 @@ pub fn all() -> Vec<Choice> {
 pub fn heading(kind: &Kind) -> Heading {
     let on_gpu = OnGpu::of(kind);
     let (side, views) = kind.measured(&on_gpu.report);
-    let size = format!("{side} × {side}");
     let measure = kind.technique.ladder().map_or("", |ladder| ladder.measure);
     Heading {
         title: kind.title,
@@ -119,13 +116,14 @@ pub fn heading(kind: &Kind) -> Heading {
         gloss: gloss(measure),
         views: views.iter().map(|view| (*view).to_owned()).collect(),
         gpu: on_gpu.name(),
-        gpu_size: if on_gpu.fills { format!("{}, filled", on_gpu.report.size()) } else { size.clone() },
+        gpu_size: on_gpu.size(kind),
         cpu: CPU,
-        cpu_size: size,
+        cpu_size: format!("{side} × {side}"),
     }
 }
 
-/// Returns a ladder's choices: a rung for each quality, equal ones together, and what is better on the GPU.
+/// Returns a ladder's choices by error, the greatest first: a rung for each quality, equal ones together, what is
+/// better on the GPU, and what holds 60 frames a second there if no quality chooses it.
 fn of_kind(kind: &'static Kind) -> Vec<Choice> {
     let Some(ladder) = kind.technique.ladder() else { return Vec::new() };
     let on_gpu = OnGpu::of(kind);
@@ -151,21 +149,21 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
             gloss: gloss(ladder.measure),
             error: format!("{:.2}", step.error),
             ms: shown(step.ms),
-            relatives: if gpu.is_none() { on_gpu.relatives(rung) } else { Vec::new() },
+            relatives: if gpu.is_none() { on_gpu.relatives(rung).map(timed).collect() } else { Vec::new() },
             gpu,
             times: format!("{:.1}", step.ms / ladder.step(&fast.to_string())?.ms),
             rung: name,
         })
     };
-    let mut choices = Vec::new();
-    for (rung, qualities) in &chosen {
-        let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
-        choices.extend(choice(*rung, qualities.iter().map(of).collect()));
-        if qualities.contains(&Quality::Fast) {
-            let better = better_on_gpu(kind, on_gpu, *rung).filter(|better| chosen.iter().all(|(of, _)| of != better));
-            choices.extend(better.and_then(|better| choice(better, vec![For { name: ON_A_GPU, is_default: false }])));
-        }
+    let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
+    let mut choices: Vec<Choice> =
+        chosen.iter().filter_map(|(rung, qualities)| choice(*rung, qualities.iter().map(of).collect())).collect();
+    for (name, rung) in [(ON_A_GPU, better_on_gpu(kind, on_gpu, fast)), (IN_A_SIXTIETH, sixty::nearest(kind))] {
+        let other = rung.filter(|rung| chosen.iter().all(|(of, _)| of != rung));
+        choices.extend(other.and_then(|rung| choice(rung, vec![For { name, is_default: false }])));
     }
+    let error = |choice: &Choice| ladder.step(&choice.rung).map_or(0.0, |step| step.error);
+    choices.sort_by(|a, b| error(b).total_cmp(&error(a)));
     choices
 }
 
@@ -183,6 +181,10 @@ fn better_on_gpu(kind: &Kind, on_gpu: &OnGpu, rung: Rung) -> Option<Rung> {
 
 fn gloss(measure: &str) -> &'static str {
     GLOSSES.iter().find(|(of, _)| *of == measure).map_or("", |(_, gloss)| gloss)
+}
+
+fn timed((rung, ms): &(String, f64)) -> Timed {
+    Timed { rung: rung.clone(), ms: shown(*ms) }
 }
 
 fn shown(ms: f64) -> String {
@@ -227,12 +229,15 @@ mod tests {
     #[test]
     fn what_is_better_on_the_gpu_stands_below_fast() {
         let all = all();
+        let of = |choice: &Choice| choice.qualities.iter().map(|of| of.name).collect::<Vec<_>>();
         let below = |pair: &[Choice]| {
-            let of = |choice: &Choice| choice.qualities.iter().map(|of| of.name).collect::<Vec<_>>();
-            (of(&pair[1]) == [ON_A_GPU]).then(|| (of(&pair[0]), pair[0].rung.clone(), pair[1].rung.clone()))
+            let [name] = of(&pair[1])[..] else { return None };
+            let other = [ON_A_GPU, IN_A_SIXTIETH].contains(&name);
+            other.then(|| (of(&pair[0]), pair[0].rung.clone(), name, pair[1].rung.clone()))
         };
         let found: Vec<_> = all.windows(2).filter_map(below).collect();
-        assert_eq!(found, [(vec!["fast"], "godunov-32".to_owned(), "diffusion-32".to_owned())]);
+        let expected = [("walk-4", IN_A_SIXTIETH, "walk-8"), ("godunov-32", ON_A_GPU, "diffusion-32")];
+        assert_eq!(found, expected.map(|(of, name, rung)| (vec!["fast"], of.to_owned(), name, rung.to_owned())));
     }
 
     #[test]

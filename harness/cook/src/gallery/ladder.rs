@@ -5,23 +5,28 @@
 
 mod axis;
 mod kind;
+mod on_gpu;
 mod pictures;
 mod plot;
 #[cfg(test)]
 mod tests;
 
 pub use kind::{KINDS, Kind};
+pub use on_gpu::OnGpu;
 pub use pictures::{LadderPictures, REFERENCE, RungPicture, pictures};
 
 use super::templates::{self, Markup};
 use crate::cost::{CostError, Report};
 use crate::snapshot::SnapshotError;
 use lapidary_plan::Quality;
-use lapidary_plan::ladder::Step;
+use lapidary_plan::ladder::{Ladder, Step};
 use lapidary_render::{RenderError, file::FileError};
 use plot::{Drawing, Point};
 use serde::Serialize;
 use std::path::PathBuf;
+
+/// The device of the committed ladders.
+pub const CPU: &str = "lavapipe on 2 CPU cores";
 
 /// Why the ladders could not be shown.
 #[derive(Debug, thiserror::Error)]
@@ -56,19 +61,33 @@ struct Shown<'a> {
     paragraph: &'a str,
     /// What the error axis shows.
     error: &'a str,
-    /// The device that the times were measured on.
-    adapter: &'a str,
-    /// What was timed, and over what is averaged.
-    measured: String,
+    /// By the committed ladder's times, and by those of the GPU.
+    plots: Vec<Plot<'a>>,
+    /// The GPU and the size of the pictures that it drew.
+    gpu: String,
     /// The report's file, and the command that measures it again.
     report: &'a str,
-    drawings: Vec<Drawing>,
     /// By number; those without a rung are left out.
     series: Vec<Option<Series>>,
     rows: Vec<Row<'a>>,
     /// Whether the table has a column of frames that the stone fills.
     filled: bool,
     compare: Option<Compare<'a>>,
+}
+
+/// The rungs by their times on one device.
+#[derive(Serialize)]
+struct Plot<'a> {
+    /// The device in short, and the size of the pictures that it drew.
+    device: String,
+    size: String,
+    /// The device in full.
+    adapter: &'a str,
+    /// What was timed, and over what is averaged.
+    measured: String,
+    drawings: Vec<Drawing>,
+    /// Whether the pictures are those that a live page times.
+    is_live: bool,
 }
 
 /// A series of the legend.
@@ -87,6 +106,8 @@ struct Row<'a> {
     ms: String,
     /// Milliseconds of a frame of 1920 by 1080 pixels that the stone fills; empty if that was not measured.
     filled: String,
+    /// Milliseconds on the GPU; empty if that was not measured.
+    gpu: String,
     qualities: String,
     front: bool,
     paper: bool,
@@ -134,9 +155,7 @@ impl<'a> Shown<'a> {
             let picture = pictures.iter().find(|picture| picture.rung == rung)?;
             Some(format!("{root}{}", picture.file))
         };
-        let points: Vec<Point> = steps.iter().map(|step| point(kind, step, href(&step.rung))).collect();
-        let (side, views) = kind.measured(report);
-        let rounds = report.setting("rounds");
+        let on_gpu = OnGpu::of(kind);
         let series = kind.series.iter().zip(plot::MARKS);
         let filled = |rung: &str| report.ms(rung, "filled", "time").filter(|_| kind.name == "convex");
         Self {
@@ -144,14 +163,9 @@ impl<'a> Shown<'a> {
             title: kind.title,
             paragraph: kind.paragraph,
             error: kind.error,
-            adapter: &report.adapter,
-            measured: format!(
-                "pictures of {side} × {side} pixels, one sample each, the least of {rounds} rounds; means over {} views: {}",
-                views.len(),
-                views.join(", ")
-            ),
+            plots: plots(kind, report, href),
+            gpu: format!("{}, {}", on_gpu.name(), on_gpu.size(kind)),
             report: kind.report,
-            drawings: plot::drawings(&points),
             series: series
                 .enumerate()
                 .map(|(at, ((_, name), mark))| {
@@ -168,8 +182,9 @@ impl<'a> Shown<'a> {
                     worst: figure(step.worst),
                     ms: format!("{:.1}", step.ms),
                     filled: filled(&step.rung).map_or_else(String::new, |ms| format!("{ms:.0}")),
+                    gpu: on_gpu.ms(&step.rung).map_or_else(String::new, |ms| format!("{ms:.1}")),
                     qualities: qualities(kind, &step.rung).join(", "),
-                    front: is_front(kind, step),
+                    front: kind.ladder().is_some_and(|ladder| is_front(ladder, step)),
                     paper: kind.paper.contains(&step.rung.as_str()),
                     href: href(&step.rung),
                 })
@@ -226,11 +241,56 @@ fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
     chosen.map(Quality::name).collect()
 }
 
-fn is_front(kind: &Kind, step: &Step) -> bool {
-    kind.ladder().is_some_and(|ladder| ladder.hull().iter().any(|other| other.rung == step.rung))
+/// Returns the plots of a ladder: by the committed times, and by those of the GPU.
+fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<String>) -> Vec<Plot<'a>> {
+    let drawings = |ladder: &Ladder, steps: &[&Step]| {
+        let points: Vec<Point> = steps.iter().map(|step| point(kind, ladder, step, href(&step.rung))).collect();
+        plot::drawings(&points)
+    };
+    let (Some(ladder), on_gpu) = (kind.ladder(), OnGpu::of(kind)) else { return Vec::new() };
+    let (side, _) = kind.measured(report);
+    let committed = Plot {
+        device: CPU.to_owned(),
+        size: format!("{side} × {side}"),
+        adapter: &report.adapter,
+        measured: measured(kind, report),
+        drawings: drawings(ladder, &kind.steps()),
+        is_live: true,
+    };
+    let there = on_gpu.ladder(ladder);
+    let mut steps: Vec<&Step> = kind.steps().into_iter().filter_map(|step| there.step(&step.rung)).collect();
+    steps.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+    let filled = format!(
+        "frames of {} pixels that a brilliant fills, one sample each, the least of {} rounds; errors are those of the other plot",
+        on_gpu.report.size(),
+        on_gpu.report.setting("rounds")
+    );
+    let other = Plot {
+        device: on_gpu.name(),
+        size: on_gpu.size(kind),
+        adapter: &on_gpu.report.adapter,
+        measured: if on_gpu.fills { filled } else { measured(kind, &on_gpu.report) },
+        drawings: drawings(&there, &steps),
+        is_live: !on_gpu.fills,
+    };
+    vec![committed, other]
 }
 
-fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
+/// Says what was timed, and over what is averaged.
+fn measured(kind: &Kind, report: &Report) -> String {
+    let (side, views) = kind.measured(report);
+    let (rounds, count) = (report.setting("rounds"), views.len());
+    let views = views.join(", ");
+    format!(
+        "pictures of {side} × {side} pixels, one sample each, the least of {rounds} rounds; means over {count} views: {views}"
+    )
+}
+
+fn is_front(ladder: &Ladder, step: &Step) -> bool {
+    ladder.hull().iter().any(|other| other.rung == step.rung)
+}
+
+fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Point {
     let qualities = qualities(kind, &step.rung);
     let default =
         if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
@@ -239,7 +299,7 @@ fn point(kind: &Kind, step: &Step, href: Option<String>) -> Point {
         ms: step.ms,
         error: step.error,
         series: kind.series_of(&step.rung) + 1,
-        front: is_front(kind, step),
+        front: is_front(ladder, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
         qualities,
         paper: kind.paper.contains(&step.rung.as_str()),

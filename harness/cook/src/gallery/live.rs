@@ -17,7 +17,7 @@ mod tests;
 
 pub use export::settings;
 pub use part::section;
-pub use scenes::{LiveScene, SAMPLES, SCENES, SIDE};
+pub use scenes::{LiveScene, SAMPLES, SCENES, SIDE, page_of};
 
 use super::data::DataError;
 use lapidary_gpu::Gpu;

@@ -3,6 +3,7 @@
 
 use super::choices::{self, Choice, Heading};
 use super::ladder::Kind;
+use super::live;
 use crate::cookbook::marks;
 use lapidary_plan::Rung;
 use lapidary_render::Settings;
@@ -27,6 +28,8 @@ pub struct Take {
     pub text: String,
     /// Its number of lines.
     pub lines: usize,
+    /// The page that draws it live, from the site's folder; `None` if none does.
+    pub live: Option<String>,
 }
 
 /// The shaders of a ladder, under what its figures are of.
@@ -110,6 +113,7 @@ pub fn take(choice: &Choice) -> Result<Take, TakeError> {
         command: [&command, " --out ", recipe.name, ".wgsl"].concat(),
         source: ["source/rung_", choice.ladder, "_", &choice.rung.replace('+', "_")].concat(),
         lines: text.lines().count(),
+        live: live::page_of(choice.ladder, &choice.rung),
         text,
         choice: choice.clone(),
     })
@@ -157,7 +161,9 @@ mod tests {
         assert!(good.text.contains("const BOUNCES: u32 = 8u;"), "{}", good.command);
         assert!(good.text.contains("override EFFECT_DISPERSION: bool = true;"), "{}", good.command);
         assert!(good.command.contains("dispersion") && good.command.contains("BOUNCES=8"), "{}", good.command);
+        assert_eq!(good.live.as_deref(), Some("live/brilliant.html"));
         let fast = take("fast");
+        assert_eq!(fast.live.as_deref(), Some("live/brilliant.html#rung=walk-4"));
         assert!(!fast.text.contains("dispersion_tracker") && fast.command.contains("BOUNCES=4"), "{}", fast.command);
     }
 

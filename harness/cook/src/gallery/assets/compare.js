@@ -224,7 +224,11 @@
       this.mark();
       this.subtract();
       const { left, right } = this.choices;
-      address(`compare=${[this.ladder, left.value, right.value].map(encodeURIComponent).join(',')}`);
+      const held = location.hash.slice(1).split('=');
+      // A live scene keeps its state there, which tells more.
+      if (held.length === 1 || held[0] === 'compare') {
+        address(`compare=${[this.ladder, left.value, right.value].map(encodeURIComponent).join(',')}`);
+      }
       say(`${left.value} on the left, ${right.value} on the right`);
     }
 

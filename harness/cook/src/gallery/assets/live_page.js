@@ -67,6 +67,13 @@ function isOfState(fragment) {
   return fragment.includes('=') && [...new URLSearchParams(fragment).keys()].some((key) => known.includes(key));
 }
 
+/** What a fragment asks for, in words, by the page's controls alone, for the scene's data may not have come yet. */
+function linked(fragment) {
+  const controls = new Set([...all('[name]').map(({ name }) => name), ...all('[data-slider]').map(({ dataset }) => dataset.slider), 'view']);
+  const pairs = fragment.includes('=') ? [...new URLSearchParams(fragment)] : [];
+  return pairs.filter(([name]) => controls.has(name)).map((pair) => pair.join(' ')).join(', ');
+}
+
 /** The fragment that holds a state: what is not as at the start. */
 function fragment() {
   const { start, state, manifest } = live;
@@ -172,7 +179,8 @@ function reflect() {
     // Not by its name, which an effect may have too.
     const range = one(`[data-slider="${name}"] input`);
     range.value = state.steps[name];
-    range.disabled = !rungs.some((rung) => rung?.moves.some(({ slider }) => slider === name));
+    // An effect that is off has nothing that its slider could move.
+    range.disabled = state.on[name] === false || !rungs.some((rung) => rung?.moves.some(({ slider }) => slider === name));
     range.setAttribute('aria-valuetext', text);
     one(`[data-slider="${name}"] output`).textContent = text;
     one(`[data-slider="${name}"] [data-reset]`).disabled = state.steps[name] === start;
@@ -414,7 +422,7 @@ async function timed(signal) {
   one('.live-time').textContent = `${ladder}${now} Measured on ${adapterName()}.`;
   if (note.textContent === MEASURING) tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {
-    for (const plot of document.querySelectorAll(`svg.plot[data-ladder="${manifest.ladder}"]`)) {
+    for (const plot of document.querySelectorAll(`svg.plot[data-live][data-ladder="${manifest.ladder}"]`)) {
       gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
     }
   }
@@ -606,6 +614,8 @@ window.addEventListener('hashchange', () => {
 });
 run.addEventListener('click', start);
 run.hidden = false;
+const asked = linked(location.hash.slice(1));
+if (asked) tell(`This link asks for ${asked}. Run it to see that.`);
 if (!navigator.gpu) tell('This browser has no WebGPU, so the picture that the renderer draws stands here.');
 
 /** For the console and for tests: all promises are kept when the picture is shown. */

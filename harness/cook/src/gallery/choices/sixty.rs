@@ -1,7 +1,7 @@
 //! What holds 60 frames a second on the one GPU that was measured.
 
-use super::super::ladder::{KINDS, Kind};
-use super::{OnGpu, heading, of_kind, shown};
+use super::super::ladder::{KINDS, Kind, OnGpu};
+use super::{heading, of_kind, shown};
 use lapidary_plan::{Geometry, Quality, Rung, Technique};
 use serde::Serialize;
 
@@ -38,6 +38,18 @@ struct Held {
     holds: bool,
 }
 
+/// Returns the rung nearest to the reference among those that hold 60 frames a second where a body fills the picture;
+/// `None` where such frames were not measured, or the rung of `fast` does not hold it either.
+pub fn nearest(kind: &Kind) -> Option<Rung> {
+    let (on_gpu, ladder) = (OnGpu::of(kind), kind.technique.ladder()?);
+    let holds = |rung: &str| on_gpu.ms(rung).is_some_and(|ms| ms <= SIXTIETH);
+    if !on_gpu.fills || !holds(&kind.technique.rung(Quality::Fast).to_string()) {
+        return None;
+    }
+    let holding = ladder.steps.iter().filter(|step| holds(&step.rung));
+    holding.min_by(|a, b| a.error.total_cmp(&b.error))?.rung.parse().ok()
+}
+
 /// Returns which rungs by map and by hierarchy hold 60 frames a second, with their errors on the same stones.
 ///
 /// # Panics
@@ -59,8 +71,8 @@ pub fn sixty() -> Sixty {
         any_shape: *geometry == Geometry::Bvh,
         holds: *ms <= SIXTIETH,
     };
-    let holding = rows.iter().filter(|row| row.3 <= SIXTIETH);
-    let nearest = holding.min_by(|a, b| a.2.total_cmp(&b.2)).expect("a rung that holds");
+    let best = nearest(stones).expect("a rung that holds").to_string();
+    let nearest = rows.iter().find(|row| row.1 == best).expect("it is by map or by hierarchy");
     let default = stones.technique.rung(Quality::default()).to_string();
     let scattering = || KINDS.iter().filter(|kind| !OnGpu::of(kind).fills);
     let longest = |kind: &'static Kind| {

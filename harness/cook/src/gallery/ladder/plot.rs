@@ -114,7 +114,8 @@ fn drawing(points: &[Point], format: &Format) -> Drawing {
     let at = |point: &Point| [across.at(point.ms), up.at(point.error)].map(rounded);
     let front: Vec<&Point> = points.iter().filter(|point| point.front).collect();
     let places: Vec<[f64; 2]> = points.iter().map(at).collect();
-    let labels = labels(points, &places, format);
+    let steps: Vec<[f64; 2]> = front.iter().map(|point| at(point)).collect();
+    let labels = labels(points, &places, &steps, format);
     let tick = |axis: &Axis, value: &f64| Tick { value: *value, at: rounded(axis.at(*value)), text: short(*value) };
     Drawing {
         name: format.name,
@@ -130,7 +131,7 @@ fn drawing(points: &[Point], format: &Format) -> Drawing {
         y1: up.ends[1],
         columns: across.ticks.iter().map(|value| tick(&across, value)).collect(),
         lines: up.ticks.iter().map(|value| tick(&up, value)).collect(),
-        front: stairs(&front.iter().map(|point| at(point)).collect::<Vec<_>>(), top, right),
+        front: stairs(&steps, top, right),
         front_of: front.iter().map(|point| format!("{},{}", point.ms, point.error)).collect::<Vec<_>>().join(" "),
         points: points
             .iter()
@@ -155,6 +156,19 @@ fn stairs(front: &[[f64; 2]], top: f64, right: f64) -> String {
     format!("M{x} {top}{steps}H{right}")
 }
 
+/// Returns the areas that its lines take.
+fn lines(front: &[[f64; 2]], top: f64, right: f64) -> Vec<Area> {
+    let before = front.first().map(|[x, _]| [*x, top]);
+    let corners = before.into_iter().chain(front.iter().copied());
+    let after = front.iter().copied().chain(front.last().map(|[_, y]| [right, *y]));
+    let mut lines = Vec::new();
+    for ([x, y], [next, next_y]) in corners.zip(after) {
+        lines.push([x, y, next, y]);
+        lines.push([next, y.min(next_y), next, y.max(next_y)]);
+    }
+    lines
+}
+
 /// Shows a value of an axis.
 fn short(value: f64) -> String {
     if (1e-3..1e6).contains(&value) { value.to_string() } else { format!("{value:e}") }
@@ -174,16 +188,19 @@ fn overlap(a: &Area, b: &Area) -> bool {
 
 /// Height of a label, and the mean width of its letters.
 const LETTER: [f64; 2] = [8.0, 15.0];
+/// What a label on a point costs, of which each line below it costs 1.
+const ON_A_MARK: usize = 100;
 /// How far from its point a label begins, in the order in which places are tried.
 const REACHES: [f64; 4] = [10.0, 22.0, 36.0, 52.0];
 
-/// Places labels so that they overlap neither each other nor points. Defaults come first; a rung of the front that has
-/// no room gets none.
-fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
+/// Places labels so that they overlap neither each other nor points, and the front where there is no other room.
+/// Defaults come first; a rung of the front that has no room gets none.
+fn labels(points: &[Point], places: &[[f64; 2]], front: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
     let is_named = |at: &usize| points[*at].front || points[*at].paper || !points[*at].qualities.is_empty();
     let mut order: Vec<usize> = (0..points.len()).filter(is_named).collect();
     order.sort_by_key(|at| (points[*at].qualities.is_empty(), !points[*at].paper));
     let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
+    let lines = lines(front, format.area[1], format.area[2]);
     let mut taken: Vec<Area> = Vec::new();
     let mut labels = vec![None; points.len()];
     for at in order {
@@ -207,11 +224,12 @@ fn labels(points: &[Point], places: &[[f64; 2]], format: &Format) -> Vec<Option<
         let costs = |area: &Area| {
             let on_marks = marks.iter().filter(|mark| overlap(area, mark)).count();
             let on_labels = taken.iter().filter(|other| overlap(area, other)).count();
-            on_marks + 100 * on_labels + if fits(area) { 0 } else { 1000 }
+            let on_lines = lines.iter().filter(|line| overlap(area, line)).count();
+            on_lines + ON_A_MARK * on_marks + 10_000 * on_labels + if fits(area) { 0 } else { 1_000_000 }
         };
         let Some((best, area)) = candidates.into_iter().min_by_key(|(_, area)| costs(area)) else { continue };
         // A default is always named.
-        if point.qualities.is_empty() && costs(&area) > 0 {
+        if point.qualities.is_empty() && costs(&area) >= ON_A_MARK {
             continue;
         }
         taken.push(area);

@@ -25,11 +25,17 @@ fn values<'h>(html: &'h str, attribute: &str) -> Vec<&'h str> {
     html.split(&start).skip(1).filter_map(|rest| rest.split_once('"')).map(|(value, _)| value).collect()
 }
 
+/// Returns the rungs of a ladder that the GPU was measured with.
+fn on_gpu(kind: &Kind) -> Vec<&'static Step> {
+    kind.steps().into_iter().filter(|step| OnGpu::of(kind).ms(&step.rung).is_some()).collect()
+}
+
 #[test]
 fn every_rung_of_the_report_is_in_the_table_and_in_both_drawings() {
     for kind in &KINDS {
         let html = html(kind, &[]);
-        let (drawings, table) = html.split_once("<tbody>").expect("a table");
+        let (plots, table) = html.split_once("<tbody>").expect("a table");
+        let (drawings, _) = plots.split_once("data-device=\"2\"").expect("a plot of the GPU");
         assert!(kind.steps().len() >= 6, "{}: {}", kind.name, kind.steps().len());
         for step in kind.steps() {
             let row = format!("<th scope=\"row\">{}</th><td class=\"number\">{}</td>", step.rung, figure(step.error));
@@ -48,14 +54,37 @@ fn every_rung_of_the_report_is_in_the_table_and_in_both_drawings() {
 }
 
 #[test]
+fn what_the_gpu_was_measured_with_is_in_its_own_plot_and_in_the_table() {
+    for kind in &KINDS {
+        let (html, gpu) = (html(kind, &[]), OnGpu::of(kind));
+        let (plots, table) = html.split_once("<tbody>").expect("a table");
+        let (_, drawings) = plots.split_once("data-device=\"2\"").expect("a plot of the GPU");
+        let steps = on_gpu(kind);
+        assert!(steps.len() >= 6, "{}: {}", kind.name, steps.len());
+        assert_eq!(drawings.matches("<g class=\"point ").count(), 2 * steps.len(), "{}", kind.name);
+        for step in steps {
+            let ms = gpu.ms(&step.rung).expect("measured");
+            let point = format!("data-ms=\"{ms}\" data-error=\"{}\"", step.error);
+            assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
+            let row = table.lines().find(|row| row.contains(&format!("<th scope=\"row\">{}</th>", step.rung)));
+            assert!(row.is_some_and(|row| row.contains(&format!("<td class=\"number\">{ms:.1}</td>"))), "{row:?}");
+        }
+        assert!(drawings.contains(&gpu.report.adapter), "{}", kind.name);
+        // A live page times the pictures of its own ladder.
+        assert_eq!(drawings.contains("data-live"), !gpu.fills, "{}", kind.name);
+    }
+}
+
+#[test]
 fn every_point_and_every_row_leads_to_a_picture_that_is_there() {
     for kind in &KINDS {
         let pictures = pretended(kind);
         let files: HashSet<String> = pictures.iter().map(|picture| format!("../{}", picture.file)).collect();
         let html = html(kind, &pictures);
         let links = values(&html, "href");
-        let steps = kind.steps().len();
-        assert_eq!(links.len(), 3 * steps + 2, "a link a point in two drawings, one a row, and the two that are shown");
+        let (steps, there) = (kind.steps().len(), on_gpu(kind).len());
+        let drawn = 2 * (steps + there);
+        assert_eq!(links.len(), drawn + steps + 2, "a link a point in two drawings, one a row, and two that are shown");
         for link in links.into_iter().chain(values(&html, "src")).chain(values(&html, "data-src")) {
             assert!(files.contains(link), "{}: {link}", kind.name);
         }

@@ -100,6 +100,7 @@ const fn toggle(effect: Effect, label: &'static str, on: bool) -> Toggle {
 const STONE_RUNGS: &[&str] = &[
     "walk-8+tracker",
     "walk-4",
+    "walk-8",
     "walk-16+tracker",
     "walk-4+tracker",
     "walk-2+tracker",
@@ -114,6 +115,18 @@ const DISPERSION: Toggle = toggle(Effect::Dispersion, "dispersion: an index for 
 const FOOTPRINT: Toggle = toggle(Effect::Footprint, "facets’ edges inside smoothed", false);
 const AROUND: Toggle = toggle(Effect::Environment, "light from all around", true);
 const HIGHLIGHTS: Toggle = toggle(Effect::Microfacet, "highlights of the rough surface", true);
+
+/// Returns the page that draws a rung of a ladder live, from the site's folder: that which begins with it, or else the
+/// first that can be switched to it.
+#[must_use]
+pub fn page_of(ladder: &str, rung: &str) -> Option<String> {
+    let mut scenes: Vec<&LiveScene> =
+        SCENES.iter().filter(|live| live.ladder == ladder && live.rungs.contains(&rung)).collect();
+    scenes.sort_by_key(|live| live.rungs[0] != rung);
+    let live = scenes.first()?;
+    let state = if live.rungs[0] == rung { String::new() } else { format!("#rung={}", rung.replace('+', "%2B")) };
+    Some(format!("live/{}.html{state}", live.scene))
+}
 
 /// Every live scene.
 pub const SCENES: [LiveScene; 5] = [

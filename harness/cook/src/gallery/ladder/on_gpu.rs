@@ -1,10 +1,9 @@
 //! What the one GPU took that was measured: its committed records.
 
-use super::super::ladder::{KINDS, Kind};
-use super::{Timed, shown};
+use super::{KINDS, Kind};
 use crate::cost::Report;
 use lapidary_plan::Rung;
-use lapidary_plan::ladder::Ladder;
+use lapidary_plan::ladder::{Ladder, Step};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -68,16 +67,27 @@ impl OnGpu {
         self.times.iter().find(|(name, _)| name == rung).map(|(_, ms)| *ms)
     }
 
+    /// Returns a ladder with these times instead of its own, without the rungs that were not measured here.
+    pub fn ladder(&self, ladder: &Ladder) -> Ladder {
+        let timed = |step: &Step| Some(Step { ms: self.ms(&step.rung)?, ..step.clone() });
+        Ladder { measure: ladder.measure, steps: ladder.steps.iter().filter_map(timed).collect() }
+    }
+
+    /// Returns the size of the pictures that it drew, in words.
+    pub fn size(&self, kind: &Kind) -> String {
+        let (side, _) = kind.measured(&self.report);
+        if self.fills { format!("{}, filled", self.report.size()) } else { format!("{side} × {side}") }
+    }
+
     /// Returns the measured rungs that differ from this one in their hits or in their colours alone.
-    pub fn relatives(&self, rung: Rung) -> Vec<Timed> {
-        let is_near = |other: &str| match (rung, other.parse()) {
+    pub fn relatives(&self, rung: Rung) -> impl Iterator<Item = &(String, f64)> {
+        let is_near = move |other: &str| match (rung, other.parse()) {
             (
                 Rung::Inside { geometry, hits, spectrum },
                 Ok(Rung::Inside { geometry: other_geometry, hits: other_hits, spectrum: other_spectrum }),
             ) => geometry == other_geometry && (hits == other_hits || spectrum == other_spectrum),
             _ => false,
         };
-        let near = self.times.iter().filter(|(name, _)| is_near(name));
-        near.map(|(name, ms)| Timed { rung: name.clone(), ms: shown(*ms) }).collect()
+        self.times.iter().filter(move |(name, _)| is_near(name))
     }
 }
