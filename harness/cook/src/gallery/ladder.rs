@@ -296,8 +296,8 @@ fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Poi
         if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
     Point {
         rung: step.rung.clone(),
-        ms: step.ms,
-        error: step.error,
+        ms: short(step.ms),
+        error: short(step.error),
         series: kind.series_of(&step.rung) + 1,
         front: is_front(ladder, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
@@ -305,6 +305,11 @@ fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Poi
         paper: kind.paper.contains(&step.rung.as_str()),
         href,
     }
+}
+
+/// Returns a value with four digits, so that pages stay small.
+fn short(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// Shows an error with three digits.

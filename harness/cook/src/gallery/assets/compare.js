@@ -286,6 +286,9 @@
 
   const nameOf = (link) => decodeURIComponent(link.pathname.split('/').pop().replace(/\.[^.]*$/, ''));
 
+  /** How far a finger moves sideways to go on, in pixels. */
+  const SWIPE = 40;
+
   const Lightbox = {
     place: 0,
     opener: null,
@@ -312,6 +315,7 @@
       this.made = made('dialog', { class: 'lightbox', 'aria-label': 'Picture' },
         made('div', { class: 'lightbox-stage' }, this.image), made('div', { class: 'lightbox-told' }, bar, this.told));
       this.made.addEventListener('keydown', (event) => this.key(event));
+      this.swipe(this.made.querySelector('.lightbox-stage'));
       this.made.addEventListener('close', () => this.closed());
       document.body.append(this.made);
       return this.made;
@@ -362,6 +366,19 @@
       if (by === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       this.go(by);
+    },
+
+    /** Goes on by a finger that moves sideways; two enlarge the page, as ever. */
+    swipe(stage) {
+      let from = null;
+      const only = ({ touches }) => (touches.length === 1 && (window.visualViewport?.scale ?? 1) === 1 ? touches[0] : null);
+      stage.addEventListener('touchstart', (event) => { from = only(event); }, { passive: true });
+      stage.addEventListener('touchend', ({ changedTouches: [to] }) => {
+        if (!from) return;
+        const [right, down] = [to.clientX - from.clientX, to.clientY - from.clientY];
+        from = null;
+        if (Math.abs(right) > SWIPE && Math.abs(right) > 2 * Math.abs(down)) this.go(right < 0 ? 1 : -1);
+      });
     },
 
     closed() {

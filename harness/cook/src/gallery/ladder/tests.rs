@@ -40,7 +40,7 @@ fn every_rung_of_the_report_is_in_the_table_and_in_both_drawings() {
         for step in kind.steps() {
             let row = format!("<th scope=\"row\">{}</th><td class=\"number\">{}</td>", step.rung, figure(step.error));
             assert_eq!(table.matches(&row).count(), 1, "{}: {row}", kind.name);
-            let point = format!("data-ms=\"{}\" data-error=\"{}\"", step.ms, step.error);
+            let point = format!("data-ms=\"{:?}\" data-error=\"{:?}\"", short(step.ms), short(step.error));
             assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
         }
         for quality in Quality::ALL {
@@ -64,7 +64,7 @@ fn what_the_gpu_was_measured_with_is_in_its_own_plot_and_in_the_table() {
         assert_eq!(drawings.matches("<g class=\"point ").count(), 2 * steps.len(), "{}", kind.name);
         for step in steps {
             let ms = gpu.ms(&step.rung).expect("measured");
-            let point = format!("data-ms=\"{ms}\" data-error=\"{}\"", step.error);
+            let point = format!("data-ms=\"{:?}\" data-error=\"{:?}\"", short(ms), short(step.error));
             assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
             let row = table.lines().find(|row| row.contains(&format!("<th scope=\"row\">{}</th>", step.rung)));
             assert!(row.is_some_and(|row| row.contains(&format!("<td class=\"number\">{ms:.1}</td>"))), "{row:?}");

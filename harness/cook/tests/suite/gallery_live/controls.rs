@@ -1,7 +1,8 @@
 //! Sliders, rungs, effects, the eye and the address.
 
 use super::{begin, differing, names, running, set, shown};
-use crate::gallery_pages::browser::SOON;
+use crate::gallery_pages::browser::{SOON, started};
+use crate::gallery_pages::site::site;
 use lapidary_cook::gallery::live::{SCENES, SIDE};
 use serde_json::json;
 
@@ -125,6 +126,13 @@ fn the_address_holds_the_state() {
     for word in ["index=", "other=surface", "wipe=70", "view=55"] {
         assert!(hash.contains(word), "{word}: {hash}");
     }
+    // What is off has nothing to move.
+    let is_disabled = "document.querySelector('#live-dispersion').disabled";
+    assert_eq!(page.evaluate(is_disabled).expect("a slider"), true);
+    // A comparison of pictures leaves it alone.
+    page.evaluate("document.querySelector('.compare-swap').click()").expect("a button");
+    let kept = page.evaluate("location.hash").expect("a hash");
+    assert_eq!(kept.as_str().map(|kept| kept.trim_start_matches('#')), Some(hash.as_str()));
     begin(&mut page, "brilliant", &hash);
     page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("started");
     page.evaluate("gallery.live.ready").expect("drawn");
@@ -140,6 +148,24 @@ fn the_address_holds_the_state() {
     assert_eq!(wipe, 100);
     assert_eq!(page.evaluate("gallery.live.state.rung").expect("a state"), SCENES[0].rungs[0]);
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
+/// The picture that stands there is not what a link asks for, and says so.
+#[test]
+fn a_link_says_what_it_asks_for() {
+    let Some(mut page) = started() else { return };
+    let mut said = |fragment: &str| {
+        page.open("about:blank").expect("an empty page");
+        page.open(&format!("{}#{fragment}", site().address("live/brilliant.html"))).expect("a page");
+        page.evaluate("document.querySelector('.live-note').textContent").expect("a note")
+    };
+    assert_eq!(
+        said("rung=walk-4&index=1.5&dispersion=off&unknown=1"),
+        "This link asks for rung walk-4, index 1.5, dispersion off. Run it to see that."
+    );
+    for of_the_page in ["", "compare=convex,walk-4,walk-2", "ladder-convex", "unknown=1"] {
+        assert_eq!(said(of_the_page), "", "{of_the_page}");
+    }
 }
 
 /// What appears by a choice or a press takes no other control's place, and a wipe says why it does nothing.

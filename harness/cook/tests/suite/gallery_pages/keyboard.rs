@@ -2,7 +2,7 @@
 
 use super::browser::{SOON, opened};
 use lapidary_browser::Page;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// What has the focus: its name, whether it lies in the window, and whether the focus can be seen: an
@@ -135,6 +135,18 @@ fn a_comparison_moves_by_arrows() {
     assert_eq!(page.evaluate(number).expect("a value"), 0);
 }
 
+/// The times of the other device are an arrow away.
+#[test]
+fn a_plots_device_is_chosen_by_arrows() {
+    let Some(mut page) = opened("techniques/diffusion.html") else { return };
+    let shown = "[...document.querySelectorAll('.ladder figure.plot')].map((plot) => plot.getClientRects().length > 0)";
+    assert_eq!(page.evaluate(shown).expect("plots"), json!([true, false]));
+    page.evaluate("document.querySelector('.plot-devices input').focus()").expect("a choice");
+    page.press("ArrowRight").expect("pressed");
+    assert_eq!(page.evaluate(shown).expect("plots"), json!([false, true]));
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
 /// A picture opens large, Right goes on to the next, Escape closes it, and the focus is where it was.
 #[test]
 fn pictures_open_go_on_and_close_by_keys() {
@@ -164,6 +176,16 @@ fn pictures_open_go_on_and_close_by_keys() {
     assert!(caption.as_str().is_some_and(|caption| caption.contains("./cook")), "{caption}");
     page.press("ArrowLeft").expect("pressed");
     page.wait_for(&shown(0), SOON).expect("back again");
+    // A finger to the left goes on, as a page is turned; one that goes down does not.
+    for to in [[120.0, 300.0], [320.0, 420.0]] {
+        let mut touch = |kind: &str, points: Value| {
+            page.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).expect(kind);
+        };
+        touch("touchStart", json!([{ "x": 300.0, "y": 300.0 }]));
+        touch("touchMove", json!([{ "x": to[0], "y": to[1] }]));
+        touch("touchEnd", json!([]));
+        page.wait_for(&shown(1), SOON).expect("the next picture");
+    }
     page.press("Escape").expect("pressed");
     page.wait_for("!document.querySelector('dialog[open]')", SOON).expect("it closes");
     assert_eq!(page.evaluate("document.activeElement.dataset.at").expect("the focus"), "0");
