@@ -1,4 +1,5 @@
-//! The rungs that the qualities choose, as the planner has them, with their figures on two devices.
+//! The rungs that the qualities choose, as the planner has them, and those that serve a GPU better, with their figures
+//! on two devices.
 
 mod sixty;
 
@@ -9,11 +10,11 @@ use lapidary_plan::{Quality, Rung};
 use serde::Serialize;
 use sixty::Sixty;
 
-/// What a rung is for that is better than that of `fast` on the GPU.
+/// Label of the rung that errs least among those that the GPU draws faster than that of `fast`.
 const ON_A_GPU: &str = "fast, on a GPU";
 
-/// What a rung is for that is the nearest to the truth which holds 60 frames a second on the GPU.
-const IN_A_SIXTIETH: &str = "60 frames a second, on the measured GPU";
+/// Label of the rung that errs least among those that hold 60 frames a second on the GPU.
+pub const IN_A_SIXTIETH: &str = "60 frames a second, on the measured GPU";
 
 /// What the errors of a measure are, in words.
 const GLOSSES: [(&str, &str); 3] = [
@@ -25,23 +26,17 @@ const GLOSSES: [(&str, &str); 3] = [
     ("nats of error", "the error of the optical depth along the path; one nat is a factor of e in the light"),
 ];
 
-/// A rung, and the qualities that choose it.
+/// A rung to choose, and what for.
 #[derive(Clone, Debug, Serialize)]
 pub struct Choice {
     /// Name of the ladder.
     pub ladder: &'static str,
-    /// What the ladder is of.
-    pub title: &'static str,
-    /// The qualities, the default's among them: those that choose the same rung are one choice.
+    /// The qualities that choose it, the default's among them, and what else it is for.
     pub qualities: Vec<For>,
     /// Whether it is what one gets without a choice.
     pub is_default: bool,
     /// The rung.
     pub rung: String,
-    /// What the error is.
-    pub measure: &'static str,
-    /// The same in words.
-    pub gloss: &'static str,
     /// The mean error over the ladder's views.
     pub error: String,
     /// Mean milliseconds of the views on lavapipe.
@@ -54,10 +49,18 @@ pub struct Choice {
     pub times: String,
 }
 
+impl Choice {
+    /// Whether the rung is for what a label says.
+    #[must_use]
+    pub fn serves(&self, label: &str) -> bool {
+        self.qualities.iter().any(|of| of.name == label)
+    }
+}
+
 /// What a rung is for.
 #[derive(Clone, Debug, Serialize)]
 pub struct For {
-    /// A quality, or where a rung is better than its quality's.
+    /// A quality, or where a rung serves better than a quality's.
     pub name: &'static str,
     /// Whether it is the quality without a choice.
     pub is_default: bool,
@@ -142,11 +145,8 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
         let gpu = on_gpu.ms(&name).map(shown);
         Some(Choice {
             ladder: kind.name,
-            title: kind.title,
             is_default: qualities.iter().any(|of| of.is_default),
             qualities,
-            measure: ladder.measure,
-            gloss: gloss(ladder.measure),
             error: format!("{:.2}", step.error),
             ms: shown(step.ms),
             relatives: if gpu.is_none() { on_gpu.relatives(rung).map(timed).collect() } else { Vec::new() },
@@ -159,8 +159,12 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
     let mut choices: Vec<Choice> =
         chosen.iter().filter_map(|(rung, qualities)| choice(*rung, qualities.iter().map(of).collect())).collect();
     for (name, rung) in [(ON_A_GPU, better_on_gpu(kind, on_gpu, fast)), (IN_A_SIXTIETH, sixty::nearest(kind))] {
-        let other = rung.filter(|rung| chosen.iter().all(|(of, _)| of != rung));
-        choices.extend(other.and_then(|rung| choice(rung, vec![For { name, is_default: false }])));
+        let Some(rung) = rung.filter(|rung| chosen.iter().all(|(of, _)| of != rung)) else { continue };
+        let label = For { name, is_default: false };
+        match choices.iter_mut().find(|choice| choice.rung == rung.to_string()) {
+            Some(choice) => choice.qualities.push(label),
+            None => choices.extend(choice(rung, vec![label])),
+        }
     }
     let error = |choice: &Choice| ladder.step(&choice.rung).map_or(0.0, |step| step.error);
     choices.sort_by(|a, b| error(b).total_cmp(&error(a)));

@@ -1,7 +1,8 @@
 //! The ladders' plots and tables, in the page's own colours, and the pictures of their rungs, any two of which can be
 //! compared.
 //!
-//! Errors and times are those of the committed ladders ([`lapidary_plan::ladder`]), by which defaults are chosen.
+//! Errors and times are those of the committed ladders ([`lapidary_plan::ladder`]), by which defaults are chosen; a
+//! second plot has a GPU's times.
 
 mod axis;
 mod kind;
@@ -12,7 +13,7 @@ mod plot;
 mod tests;
 
 pub use kind::{KINDS, Kind};
-pub use on_gpu::OnGpu;
+pub use on_gpu::{OnGpu, SIXTIETH};
 pub use pictures::{LadderPictures, REFERENCE, RungPicture, pictures};
 
 use super::templates::{self, Markup};
@@ -63,12 +64,11 @@ struct Shown<'a> {
     error: &'a str,
     /// By the committed ladder's times, and by those of the GPU.
     plots: Vec<Plot<'a>>,
-    /// The GPU and the size of the pictures that it drew.
+    /// The devices and the sizes of the pictures that they drew.
+    cpu: String,
     gpu: String,
     /// The report's file, and the command that measures it again.
     report: &'a str,
-    /// By number; those without a rung are left out.
-    series: Vec<Option<Series>>,
     rows: Vec<Row<'a>>,
     /// Whether the table has a column of frames that the stone fills.
     filled: bool,
@@ -86,6 +86,10 @@ struct Plot<'a> {
     /// What was timed, and over what is averaged.
     measured: String,
     drawings: Vec<Drawing>,
+    /// By number; those without a rung are left out.
+    series: Vec<Option<Series>>,
+    /// Defaults that another rung beats here, a sentence each.
+    beaten: Vec<String>,
     /// Whether the pictures are those that a live page times.
     is_live: bool,
 }
@@ -156,7 +160,6 @@ impl<'a> Shown<'a> {
             Some(format!("{root}{}", picture.file))
         };
         let on_gpu = OnGpu::of(kind);
-        let series = kind.series.iter().zip(plot::MARKS);
         let filled = |rung: &str| report.ms(rung, "filled", "time").filter(|_| kind.name == "convex");
         Self {
             name: kind.name,
@@ -164,15 +167,9 @@ impl<'a> Shown<'a> {
             paragraph: kind.paragraph,
             error: kind.error,
             plots: plots(kind, report, href),
+            cpu: CPU.to_owned(),
             gpu: format!("{}, {}", on_gpu.name(), on_gpu.size(kind)),
             report: kind.report,
-            series: series
-                .enumerate()
-                .map(|(at, ((_, name), mark))| {
-                    let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == at);
-                    is_there.then_some(Series { name, mark })
-                })
-                .collect(),
             filled: steps.iter().any(|step| filled(&step.rung).is_some()),
             rows: steps
                 .iter()
@@ -213,7 +210,7 @@ impl<'a> Compare<'a> {
             let unmeasured = if picture.rung == REFERENCE { "" } else { "not measured in this ladder" };
             let figures = step.map_or_else(
                 || unmeasured.to_owned(),
-                |step| format!("{} {}, {:.1} ms in the ladder’s mean", kind.error, figure(step.error), step.ms),
+                |step| format!("{} {}, {:.1} ms by {CPU}", kind.error, figure(step.error), step.ms),
             );
             let qualities = qualities(kind, &picture.rung).join(", ");
             Compared {
@@ -243,9 +240,17 @@ fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
 
 /// Returns the plots of a ladder: by the committed times, and by those of the GPU.
 fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<String>) -> Vec<Plot<'a>> {
-    let drawings = |ladder: &Ladder, steps: &[&Step]| {
+    let drawings = |ladder: &Ladder, steps: &[&Step], limit: Option<f64>| {
         let points: Vec<Point> = steps.iter().map(|step| point(kind, ladder, step, href(&step.rung))).collect();
-        plot::drawings(&points)
+        plot::drawings(&points, limit)
+    };
+    let series = |steps: &[&Step]| {
+        let all = kind.series.iter().zip(plot::MARKS).enumerate();
+        all.map(|(at, ((_, name), mark))| {
+            let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == at);
+            is_there.then_some(Series { name, mark })
+        })
+        .collect()
     };
     let (Some(ladder), on_gpu) = (kind.ladder(), OnGpu::of(kind)) else { return Vec::new() };
     let (side, _) = kind.measured(report);
@@ -254,7 +259,9 @@ fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<Stri
         size: format!("{side} × {side}"),
         adapter: &report.adapter,
         measured: measured(kind, report),
-        drawings: drawings(ladder, &kind.steps()),
+        drawings: drawings(ladder, &kind.steps(), None),
+        beaten: Vec::new(),
+        series: series(&kind.steps()),
         is_live: true,
     };
     let there = on_gpu.ladder(ladder);
@@ -270,10 +277,23 @@ fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<Stri
         size: on_gpu.size(kind),
         adapter: &on_gpu.report.adapter,
         measured: if on_gpu.fills { filled } else { measured(kind, &on_gpu.report) },
-        drawings: drawings(&there, &steps),
+        drawings: drawings(&there, &steps, on_gpu.fills.then_some(SIXTIETH)),
+        beaten: beaten(kind, &there),
+        series: series(&steps),
         is_live: !on_gpu.fills,
     };
     vec![committed, other]
+}
+
+/// Says which defaults another rung beats by these times.
+fn beaten(kind: &Kind, ladder: &Ladder) -> Vec<String> {
+    let of = |quality: Quality| {
+        let step = ladder.step(&kind.technique.rung(quality).to_string())?;
+        let better = ladder.steps.iter().filter(|other| other.ms < step.ms && other.error < step.error);
+        let best = better.min_by(|a, b| a.error.total_cmp(&b.error))?;
+        Some(format!("{} is faster here than {quality}’s {}, and errs less.", best.rung, step.rung))
+    };
+    Quality::ALL.into_iter().filter_map(of).collect()
 }
 
 /// Says what was timed, and over what is averaged.
@@ -296,8 +316,8 @@ fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Poi
         if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
     Point {
         rung: step.rung.clone(),
-        ms: short(step.ms),
-        error: short(step.error),
+        ms: four_digits(step.ms),
+        error: four_digits(step.error),
         series: kind.series_of(&step.rung) + 1,
         front: is_front(ladder, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
@@ -308,7 +328,7 @@ fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Poi
 }
 
 /// Returns a value with four digits, so that pages stay small.
-fn short(value: f64) -> f64 {
+fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 

@@ -1,4 +1,4 @@
-//! The shader of each rung that a quality chooses, to paste: what `cook copy` writes for the values that the renderer
+//! The shader of each rung to choose, to paste: what `cook copy` writes for the values that the renderer
 //! gives it, below a line that names the rung and the command.
 
 use super::choices::{self, Choice, Heading};
@@ -28,6 +28,8 @@ pub struct Take {
     pub text: String,
     /// Its number of lines.
     pub lines: usize,
+    /// The id of its row.
+    pub id: String,
     /// The page that draws it live, from the site's folder; `None` if none does.
     pub live: Option<String>,
 }
@@ -113,6 +115,7 @@ pub fn take(choice: &Choice) -> Result<Take, TakeError> {
         command: [&command, " --out ", recipe.name, ".wgsl"].concat(),
         source: ["source/rung_", choice.ladder, "_", &choice.rung.replace('+', "_")].concat(),
         lines: text.lines().count(),
+        id: ["take-", choice.ladder, "-", &choice.rung.replace('+', "_")].concat(),
         live: live::page_of(choice.ladder, &choice.rung),
         text,
         choice: choice.clone(),

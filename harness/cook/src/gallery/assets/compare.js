@@ -1,6 +1,6 @@
 // Plots whose points choose pictures, a slider between two pictures, and the lightbox.
 //
-//   gallery.plotPoint(place, ms, error, label)  a further point in every plot of `place`, for the visitor's own GPU
+//   gallery.plotPoint(ladder, ms, error, label) a further point in a ladder's plots, for the visitor's own GPU
 //   gallery.compare(ladder, {left, right})      the ladder's slider with these rungs
 //   gallery.picture(name)                       the lightbox with the picture of that file name; null closes it
 'use strict';
@@ -46,12 +46,26 @@
   const across = ({ x0, x1, left, right }, ms) => left + (Math.log(ms / x0) / Math.log(x1 / x0)) * (right - left);
   const up = ({ y0, y1, top, bottom }, error) => bottom + (Math.log(error / y0) / Math.log(y1 / y0)) * (top - bottom);
 
-  /** Returns labels for an axis: 1, 2 and 5 times powers of ten, or powers alone if there were many. */
-  const ticksOf = ({ x0, x1, right, left }) => {
-    const parts = Math.log10(x1 / x0) * 170 > right - left ? [1] : [1, 2, 5];
+  /** Parts of a power of ten, in tenths, that an axis may label: as in ladder/axis.rs. */
+  const PARTS = [[10, 12, 14, 16, 18, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90], [10, 20, 30, 40, 50, 60, 80], [10, 20, 50], [10]];
+  const MOST_TICKS = 9;
+  /** Width of a digit of an axis, and the room between its labels: as in ladder/plot.rs. */
+  const [DIGIT, ROOM] = [8.5, 6];
+
+  /** Returns labels for an axis: as many as can be told apart. */
+  const ticksOf = (scale) => {
+    const { x0, x1 } = scale;
     const powers = [];
     for (let power = Math.floor(Math.log10(x0)); power <= Math.log10(x1); power += 1) powers.push(power);
-    return powers.flatMap((power) => parts.map((part) => Number(`${part}e${power}`))).filter((ms) => ms >= x0 && ms <= x1);
+    const of = (parts) => powers.flatMap((power) => parts.map((part) => Number(`${part}e${power - 1}`))).filter((ms) => ms >= x0 && ms <= x1);
+    const all = PARTS.map(of);
+    let end = -Infinity;
+    return (all.find((ticks) => ticks.length <= MOST_TICKS) ?? all.at(-1)).filter((ms) => {
+      const [at, half] = [across(scale, ms), (DIGIT * String(ms).length) / 2];
+      if (at - half < end + ROOM) return false;
+      end = at + half;
+      return true;
+    });
   };
 
   /** Lays a plot's columns anew, between the ends that it now has. */
@@ -141,7 +155,7 @@
     all('.visitor', place).filter((old) => old.dataset.label === label).forEach((old) => old.remove());
     const room = 1.35;
     const before = scaleOf(svg);
-    const scale = { ...before, x0: Math.min(before.x0, ms / room), x1: Math.max(before.x1, ms * room) };
+    const scale = { ...before, x0: ms < before.x0 ? ms / room : before.x0, x1: ms > before.x1 ? ms * room : before.x1 };
     const clamped = Math.min(Math.max(error, scale.y0), scale.y1);
     const point = drawn('g', { class: 'point visitor', 'data-ms': ms, 'data-error': clamped, 'data-label': label });
     const toLeft = across(scale, ms) > (scale.left + scale.right) / 2;
@@ -164,13 +178,25 @@
   };
 
   /**
-   * Adds a point to every plot in `place`, a plot or an element around plots. `ms` is the time of the picture that the
-   * plot's caption names; where it lies outside the axis, the axis grows. Returns the points.
+   * Adds a point to a ladder's plots of such pictures as a live page times, and shows one of them. `ms` is the time of
+   * the picture that the plot's caption names; where it lies outside the axis, the axis grows. Returns the points.
    */
-  site.plotPoint = (place, ms, error, label) => {
+  site.plotPoint = (ladder, ms, error, label) => {
     if (!(ms > 0) || !(error > 0)) return [];
-    const plots = place.matches('svg.plot') ? [place] : all('svg.plot', place);
-    return plots.map((svg) => plotted(svg, ms, error, label));
+    const figures = all('figure.plot', ladder).filter((figure) => figure.querySelector('svg.plot[data-live]'));
+    const choices = all('.plot-devices input', ladder);
+    const of = ({ dataset }) => choices.find(({ value }) => value === dataset.device);
+    if (choices.length > 0 && !figures.some((figure) => of(figure).checked)) of(figures[0]).checked = true;
+    return figures.flatMap((figure) => all('svg.plot', figure)).map((svg) => plotted(svg, ms, error, label));
+  };
+
+  /** Finds room for the labels of a plot that is shown: one that is hidden has none. */
+  const shown = ({ target }) => {
+    if (!target.matches('.plot-devices input')) return;
+    for (const svg of all('svg.plot', target.closest('.ladder')).filter((svg) => svg.querySelector('.visitor'))) {
+      turn(svg, scaleOf(svg));
+      thin(svg);
+    }
   };
 
   // ---- The slider --------------------------------------------------------------------------------------------------
@@ -371,7 +397,7 @@
     /** Goes on by a finger that moves sideways; two enlarge the page, as ever. */
     swipe(stage) {
       let from = null;
-      const only = ({ touches }) => (touches.length === 1 && (window.visualViewport?.scale ?? 1) === 1 ? touches[0] : null);
+      const only = ({ touches }) => (touches.length === 1 && (window.visualViewport?.scale ?? 1) < 1.01 ? touches[0] : null);
       stage.addEventListener('touchstart', (event) => { from = only(event); }, { passive: true });
       stage.addEventListener('touchend', ({ changedTouches: [to] }) => {
         if (!from) return;
@@ -418,6 +444,7 @@
   const start = () => {
     for (const figure of all('figure.compare')) compares.set(figure.dataset.ladder, new Compare(figure));
     document.addEventListener('click', choose);
+    document.addEventListener('change', shown);
     document.addEventListener('click', enlarge);
     addEventListener('hashchange', follow);
     follow();

@@ -60,18 +60,45 @@ function parsed(fragment) {
   return view.length === 3 && view.every(Number.isFinite) ? { ...state, ...placed(...view) } : state;
 }
 
-/** Whether a fragment says anything of the state; those of headings, pictures and comparisons do not. */
-function isOfState(fragment) {
-  const { toggles, sliders } = live.manifest;
-  const known = ['rung', 'other', 'wipe', 'view', ...Object.keys(toggles), ...Object.keys(sliders)];
-  return fragment.includes('=') && [...new URLSearchParams(fragment).keys()].some((key) => known.includes(key));
+/** What a fragment asks for, in words: by the controls alone, for the scene's data may not have come yet. Fragments of
+ * headings, pictures and comparisons ask for nothing. */
+function asked(fragment) {
+  const label = (control) => control.labels[0].textContent.trim();
+  const words = ([name, value]) => {
+    const isNumber = Number.isFinite(Number.parseFloat(value));
+    if (name === 'view') return 'another view';
+    if (name === 'wipe') return isNumber && `the wipe at ${value} %`;
+    if (name === 'rung' || name === 'other') {
+      const isKnown = [...input(name).options].some((option) => option.value === value);
+      return isKnown && (name === 'rung' ? value : `${value} beside it`);
+    }
+    // An effect and its slider may have one name.
+    const toggle = all('[data-toggle]').find((box) => box.name === name);
+    if (toggle && (value === 'on' || value === 'off')) return `${label(toggle)}: ${value}`;
+    const slider = all('[data-slider] input').find((range) => range.name === name);
+    return slider && isNumber && `${label(slider)}: ${value}`;
+  };
+  const pairs = fragment.includes('=') ? [...new URLSearchParams(fragment)] : [];
+  return pairs.map(words).filter(Boolean);
 }
 
-/** What a fragment asks for, in words, by the page's controls alone, for the scene's data may not have come yet. */
-function linked(fragment) {
-  const controls = new Set([...all('[name]').map(({ name }) => name), ...all('[data-slider]').map(({ dataset }) => dataset.slider), 'view']);
-  const pairs = fragment.includes('=') ? [...new URLSearchParams(fragment)] : [];
-  return pairs.filter(([name]) => controls.has(name)).map((pair) => pair.join(' ')).join(', ');
+/** Says what the link asks for, as long as it is not drawn. */
+function reflectLink() {
+  const wishes = live ? [] : asked(location.hash.slice(1));
+  one('.live-asked').hidden = wishes.length === 0;
+  one('.live-asked').textContent = `This link asks for ${wishes.join('; ')}. Run it to see that.`;
+  if (live) return;
+  // The controls that need no data show it already.
+  const pairs = [...new URLSearchParams(location.hash.slice(1))];
+  for (const name of ['rung', 'other']) {
+    const options = [...input(name).options];
+    const value = pairs.find(([key]) => key === name)?.[1];
+    input(name).value = options.some((option) => option.value === value) ? value : options[0].value;
+  }
+  for (const box of all('[data-toggle]')) {
+    const word = pairs.find(([key, value]) => key === box.name && (value === 'on' || value === 'off'))?.[1];
+    box.checked = word ? word === 'on' : box.defaultChecked;
+  }
 }
 
 /** The fragment that holds a state: what is not as at the start. */
@@ -168,11 +195,16 @@ function reflect() {
   for (const option of input('other').options) option.disabled = option.value === state.rung;
   seam.hidden = canvas.hidden || !state.other || same;
   seam.style.left = `${state.wipe}%`;
+  for (const [at, name] of [state.rung, state.other].entries()) {
+    const side = all('.live-side')[at];
+    [side.hidden, side.textContent] = [seam.hidden, name];
+  }
   const wiped = same ? 'same rung twice' : `${state.wipe} %`;
   one('[data-wipe] output').textContent = state.other ? wiped : 'nothing beside';
   for (const box of all('[data-toggle]')) {
-    box.checked = state.on[box.name];
     box.disabled = !rungs.some((rung) => rung?.toggles.includes(box.name));
+    // A rung without the effect has it off, whatever the state keeps for the others.
+    box.checked = state.on[box.name] && !box.disabled;
   }
   for (const [name, { values, unit, start }] of Object.entries(manifest.sliders)) {
     const text = `${Number(values[state.steps[name]].toPrecision(3))} ${unit}`.trim();
@@ -296,6 +328,7 @@ async function start() {
     if (!navigator.gpu) throw new Error('This browser has no WebGPU');
     live ??= new Live(await gallery.load(`live/${scene}`), canvas);
     Object.assign(live.state, parsed(location.hash.slice(1)));
+    reflectLink();
     losses = 0;
     await begin();
     canvas.focus({ preventScroll: true });
@@ -422,9 +455,8 @@ async function timed(signal) {
   one('.live-time').textContent = `${ladder}${now} Measured on ${adapterName()}.`;
   if (note.textContent === MEASURING) tell('');
   for (const { rung, ms } of measured.filter(({ rung }) => manifest.rungs[rung].error !== null)) {
-    for (const plot of document.querySelectorAll(`svg.plot[data-live][data-ladder="${manifest.ladder}"]`)) {
-      gallery.plotPoint?.(plot, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
-    }
+    const ladder = document.querySelector(`#ladder-${manifest.ladder}`);
+    if (ladder) gallery.plotPoint?.(ladder, ms, manifest.rungs[rung].error, `${rung} on your GPU`);
   }
 }
 
@@ -472,17 +504,18 @@ async function lightBy(file) {
   }
 }
 
-/** Copies the shader, and says so on the button that was pressed. */
-async function copyShader(button) {
-  const done = await gallery.copy(shader());
-  tell(done ? 'The shader is in the clipboard.' : 'The shader could not be copied: this browser gives no way to it here.');
+/** Copies a text, and says so on the button that was pressed. */
+async function copy(button, text, what) {
+  const done = await gallery.copy(text);
+  tell(done ? `${what} is in the clipboard.` : `${what} could not be copied: this browser gives no way to it here.`);
   button.textContent = done ? 'Copied' : 'Not copied';
   setTimeout(() => (button.textContent = button.dataset.label), 2000);
 }
 
 const actions = {
   time: measure,
-  shader: copyShader,
+  shader: (button) => copy(button, shader(), 'The shader'),
+  link: (button) => copy(button, location.href, 'The link'),
   start: () => set(structuredClone(live.start)),
 };
 for (const button of all('[data-do]')) button.addEventListener('click', () => actions[button.dataset.do](button));
@@ -610,12 +643,12 @@ for (const kind of ['dragover', 'dragleave', 'drop']) {
 
 window.addEventListener('hashchange', () => {
   const fragment = location.hash.slice(1);
-  if (live?.device && isOfState(fragment)) set(parsed(fragment));
+  if (live?.device && asked(fragment).length > 0) set(parsed(fragment));
+  reflectLink();
 });
 run.addEventListener('click', start);
 run.hidden = false;
-const asked = linked(location.hash.slice(1));
-if (asked) tell(`This link asks for ${asked}. Run it to see that.`);
+reflectLink();
 if (!navigator.gpu) tell('This browser has no WebGPU, so the picture that the renderer draws stands here.');
 
 /** For the console and for tests: all promises are kept when the picture is shown. */

@@ -1,12 +1,9 @@
 //! What holds 60 frames a second on the one GPU that was measured.
 
-use super::super::ladder::{KINDS, Kind, OnGpu};
+use super::super::ladder::{KINDS, Kind, OnGpu, SIXTIETH};
 use super::{heading, of_kind, shown};
 use lapidary_plan::{Geometry, Quality, Rung, Technique};
 use serde::Serialize;
-
-/// Milliseconds of a frame, of which 60 are shown in a second.
-const SIXTIETH: f64 = 1000.0 / 60.0;
 
 /// Which rungs hold it, for the page.
 #[derive(Clone, Debug, Serialize)]
@@ -38,15 +35,23 @@ struct Held {
     holds: bool,
 }
 
-/// Returns the rung nearest to the reference among those that hold 60 frames a second where a body fills the picture;
-/// `None` where such frames were not measured, or the rung of `fast` does not hold it either.
+/// Returns the geometry of a rung that searches a stone by map or by hierarchy; `None` for the others.
+fn searched(rung: &str) -> Option<Geometry> {
+    match rung.parse() {
+        Ok(Rung::Inside { geometry: geometry @ (Geometry::Walk | Geometry::Bvh), .. }) => Some(geometry),
+        _ => None,
+    }
+}
+
+/// Returns the rung by map or by hierarchy that errs least among those that hold 60 frames a second where a stone fills
+/// the picture; `None` where such frames were not measured, or where even `fast` takes longer.
 pub fn nearest(kind: &Kind) -> Option<Rung> {
     let (on_gpu, ladder) = (OnGpu::of(kind), kind.technique.ladder()?);
     let holds = |rung: &str| on_gpu.ms(rung).is_some_and(|ms| ms <= SIXTIETH);
     if !on_gpu.fills || !holds(&kind.technique.rung(Quality::Fast).to_string()) {
         return None;
     }
-    let holding = ladder.steps.iter().filter(|step| holds(&step.rung));
+    let holding = ladder.steps.iter().filter(|step| searched(&step.rung).is_some() && holds(&step.rung));
     holding.min_by(|a, b| a.error.total_cmp(&b.error))?.rung.parse().ok()
 }
 
@@ -57,11 +62,7 @@ pub fn nearest(kind: &Kind) -> Option<Rung> {
 pub fn sixty() -> Sixty {
     let stones = KINDS.iter().find(|kind| kind.technique == Technique::Convex).expect("the ladder of convex stones");
     let (on_gpu, ladder) = (OnGpu::of(stones), stones.technique.ladder().expect("a committed ladder"));
-    let is_shown = |rung: &str| match rung.parse() {
-        Ok(Rung::Inside { geometry: geometry @ (Geometry::Walk | Geometry::Bvh), .. }) => Some(geometry),
-        _ => None,
-    };
-    let row = |(rung, ms): &(String, f64)| Some((is_shown(rung)?, rung.clone(), ladder.step(rung)?.error, *ms));
+    let row = |(rung, ms): &(String, f64)| Some((searched(rung)?, rung.clone(), ladder.step(rung)?.error, *ms));
     let mut rows: Vec<_> = on_gpu.times.iter().filter_map(row).collect();
     rows.sort_by(|a, b| a.3.total_cmp(&b.3));
     let held = |(geometry, rung, error, ms): &(Geometry, String, f64, f64)| Held {
@@ -72,9 +73,9 @@ pub fn sixty() -> Sixty {
         holds: *ms <= SIXTIETH,
     };
     let best = nearest(stones).expect("a rung that holds").to_string();
-    let nearest = rows.iter().find(|row| row.1 == best).expect("it is by map or by hierarchy");
+    let nearest = rows.iter().find(|row| row.1 == best).expect("it was timed");
     let default = stones.technique.rung(Quality::default()).to_string();
-    let scattering = || KINDS.iter().filter(|kind| !OnGpu::of(kind).fills);
+    let scattering = || KINDS.iter().filter(|kind| kind.report != "gem");
     let longest = |kind: &'static Kind| {
         of_kind(kind).into_iter().filter_map(|choice| OnGpu::of(kind).ms(&choice.rung)).fold(0.0, f64::max)
     };
@@ -107,7 +108,7 @@ mod tests {
     #[test]
     fn scattering_bodies_were_measured_at_one_size() {
         let sizes: Vec<String> =
-            KINDS.iter().filter(|kind| !OnGpu::of(kind).fills).map(|kind| heading(kind).gpu_size).collect();
+            KINDS.iter().filter(|kind| kind.report != "gem").map(|kind| heading(kind).gpu_size).collect();
         assert!(sizes.len() > 1 && sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
     }
 }

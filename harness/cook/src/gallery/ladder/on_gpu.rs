@@ -2,10 +2,13 @@
 
 use super::{KINDS, Kind};
 use crate::cost::Report;
-use lapidary_plan::Rung;
 use lapidary_plan::ladder::{Ladder, Step};
+use lapidary_plan::{Rung, Technique};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
+
+/// Milliseconds of a frame, of which 60 are shown in a second.
+pub const SIXTIETH: f64 = 1000.0 / 60.0;
 
 /// The records, by the ladder's report.
 const RECORDS: [(&str, &str); 4] = [
@@ -43,7 +46,7 @@ impl OnGpu {
         let record = RECORDS.iter().find(|(report, _)| *report == kind.report).map_or("", |(_, record)| record);
         let damaged = |error: &dyn std::fmt::Display| -> ! { panic!("nvidia_h200/{}.json: {error}", kind.report) };
         let report = Report::from_json(kind.report, record).unwrap_or_else(|error| damaged(&error));
-        let fills = kind.report == "gem";
+        let fills = kind.technique == Technique::Convex;
         let times = if fills {
             // The steady rung's frame is timed with each way to sample a pixel; the ladder's is one sample.
             let frame =

@@ -57,6 +57,8 @@ pub(super) struct Drawing {
     y0: f64,
     y1: f64,
     columns: Vec<Tick>,
+    /// Where the limit stands, if within the axis.
+    limit: Option<f64>,
     lines: Vec<Tick>,
     /// The staircase: its path, and the points of the front as `ms,error` with spaces between.
     front: String,
@@ -102,12 +104,12 @@ pub(super) const MARKS: [&str; 6] = [
     "M0 6L5.5 -4.2H-5.5Z",
 ];
 
-/// Returns a plot's drawings, for wide columns and for phones.
-pub(super) fn drawings(points: &[Point]) -> Vec<Drawing> {
-    FORMATS.iter().map(|format| drawing(points, format)).collect()
+/// Returns a plot's drawings, for wide columns and for phones, with a line at the milliseconds of a limit.
+pub(super) fn drawings(points: &[Point], limit: Option<f64>) -> Vec<Drawing> {
+    FORMATS.iter().map(|format| drawing(points, limit, format)).collect()
 }
 
-fn drawing(points: &[Point], format: &Format) -> Drawing {
+fn drawing(points: &[Point], limit: Option<f64>, format: &Format) -> Drawing {
     let [left, top, right, bottom] = format.area;
     let across = Axis::of(points.iter().map(|point| point.ms), [left, right]);
     let up = Axis::of(points.iter().map(|point| point.error), [bottom, top]);
@@ -115,7 +117,8 @@ fn drawing(points: &[Point], format: &Format) -> Drawing {
     let front: Vec<&Point> = points.iter().filter(|point| point.front).collect();
     let places: Vec<[f64; 2]> = points.iter().map(at).collect();
     let steps: Vec<[f64; 2]> = front.iter().map(|point| at(point)).collect();
-    let labels = labels(points, &places, &steps, format);
+    let corners = stairs(&steps, top, right);
+    let labels = labels(points, &places, &corners, format);
     let tick = |axis: &Axis, value: &f64| Tick { value: *value, at: rounded(axis.at(*value)), text: short(*value) };
     Drawing {
         name: format.name,
@@ -129,9 +132,10 @@ fn drawing(points: &[Point], format: &Format) -> Drawing {
         x1: across.ends[1],
         y0: up.ends[0],
         y1: up.ends[1],
-        columns: across.ticks.iter().map(|value| tick(&across, value)).collect(),
+        columns: apart(across.ticks.iter().map(|value| tick(&across, value))),
+        limit: limit.filter(|ms| across.ends[0] < *ms && *ms < across.ends[1]).map(|ms| rounded(across.at(ms))),
         lines: up.ticks.iter().map(|value| tick(&up, value)).collect(),
-        front: stairs(&steps, top, right),
+        front: path(&corners),
         front_of: front.iter().map(|point| format!("{},{}", point.ms, point.error)).collect::<Vec<_>>().join(" "),
         points: points
             .iter()
@@ -148,25 +152,29 @@ fn drawing(points: &[Point], format: &Format) -> Drawing {
     }
 }
 
-/// Returns the path along the least error that each time buys. Points come by increasing time.
-fn stairs(front: &[[f64; 2]], top: f64, right: f64) -> String {
-    let Some([x, y]) = front.first() else { return String::new() };
-    let steps: String = front.iter().map(|[x, y]| format!("H{x}V{y}")).collect();
-    let _ = y;
-    format!("M{x} {top}{steps}H{right}")
+/// Returns the corners of the staircase of the least error that each time buys, as lines from one to the next. Points
+/// come by increasing time.
+fn stairs(front: &[[f64; 2]], top: f64, right: f64) -> Vec<[f64; 2]> {
+    let (Some([x, _]), Some([_, last])) = (front.first(), front.last()) else { return Vec::new() };
+    let mut corners = vec![[*x, top]];
+    for [x, y] in front {
+        let before = corners[corners.len() - 1][1];
+        corners.extend([[*x, before], [*x, *y]]);
+    }
+    corners.push([right, *last]);
+    corners.dedup();
+    corners
 }
 
-/// Returns the areas that its lines take.
-fn lines(front: &[[f64; 2]], top: f64, right: f64) -> Vec<Area> {
-    let before = front.first().map(|[x, _]| [*x, top]);
-    let corners = before.into_iter().chain(front.iter().copied());
-    let after = front.iter().copied().chain(front.last().map(|[_, y]| [right, *y]));
-    let mut lines = Vec::new();
-    for ([x, y], [next, next_y]) in corners.zip(after) {
-        lines.push([x, y, next, y]);
-        lines.push([next, y.min(next_y), next, y.max(next_y)]);
-    }
-    lines
+/// Returns a path through corners, of which each line goes across or down.
+fn path(corners: &[[f64; 2]]) -> String {
+    let Some([x, y]) = corners.first() else { return String::new() };
+    let line = |pair: &[[f64; 2]]| match pair {
+        [[x, _], [next, y]] if x == next => format!("V{y}"),
+        [_, [x, _]] => format!("H{x}"),
+        _ => String::new(),
+    };
+    format!("M{x} {y}{}", corners.windows(2).map(line).collect::<String>())
 }
 
 /// Shows a value of an axis.
@@ -179,6 +187,21 @@ fn rounded(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
+/// Width of a digit of an axis, and the room between its labels.
+const DIGIT: [f64; 2] = [8.5, 6.0];
+
+/// Leaves out ticks whose labels would touch the one before.
+fn apart(ticks: impl Iterator<Item = Tick>) -> Vec<Tick> {
+    let half = |tick: &Tick| 0.5 * DIGIT[0] * tick.text.len() as f64;
+    let mut kept: Vec<Tick> = Vec::new();
+    for tick in ticks {
+        if kept.last().is_none_or(|last| last.at + half(last) + DIGIT[1] <= tick.at - half(&tick)) {
+            kept.push(tick);
+        }
+    }
+    kept
+}
+
 /// A rectangle: left, top, right, bottom.
 type Area = [f64; 4];
 
@@ -188,20 +211,42 @@ fn overlap(a: &Area, b: &Area) -> bool {
 
 /// Height of a label, and the mean width of its letters.
 const LETTER: [f64; 2] = [8.0, 15.0];
-/// What a label on a point costs, of which each line below it costs 1.
-const ON_A_MARK: usize = 100;
+/// What a label costs on a line of the front, on another's leader or with a leader across another label, on a point, on
+/// another label, and outside the plot.
+const COSTS: [usize; 5] = [1, 10, 1000, 100_000, 10_000_000];
+/// From this on a label has no room.
+const NO_ROOM: usize = COSTS[2];
+
+/// Whether a line across or down passes through an area.
+fn passes([from, to]: &[[f64; 2]; 2], area: &Area) -> bool {
+    let [left, right] = [from[0].min(to[0]), from[0].max(to[0])];
+    let [top, bottom] = [from[1].min(to[1]), from[1].max(to[1])];
+    overlap(&[left, top, right, bottom], area)
+}
+
+/// Whether a line passes through an area: by points of it, closer than areas are wide.
+fn crosses([from, to]: &[[f64; 2]; 2], area: &Area) -> bool {
+    const PARTS: u32 = 16;
+    (0..=PARTS).any(|part| {
+        let share = f64::from(part) / f64::from(PARTS);
+        let [x, y] = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        area[0] < x && x < area[2] && area[1] < y && y < area[3]
+    })
+}
+
 /// How far from its point a label begins, in the order in which places are tried.
 const REACHES: [f64; 4] = [10.0, 22.0, 36.0, 52.0];
 
-/// Places labels so that they overlap neither each other nor points, and the front where there is no other room.
+/// Places labels so that they overlap neither each other nor points, and lines only where there is no other room.
 /// Defaults come first; a rung of the front that has no room gets none.
-fn labels(points: &[Point], places: &[[f64; 2]], front: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
+fn labels(points: &[Point], places: &[[f64; 2]], corners: &[[f64; 2]], format: &Format) -> Vec<Option<Label>> {
     let is_named = |at: &usize| points[*at].front || points[*at].paper || !points[*at].qualities.is_empty();
     let mut order: Vec<usize> = (0..points.len()).filter(is_named).collect();
     order.sort_by_key(|at| (points[*at].qualities.is_empty(), !points[*at].paper));
     let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
-    let lines = lines(front, format.area[1], format.area[2]);
+    let lines: Vec<[[f64; 2]; 2]> = corners.windows(2).map(|pair| [pair[0], pair[1]]).collect();
     let mut taken: Vec<Area> = Vec::new();
+    let mut leaders: Vec<[[f64; 2]; 2]> = Vec::new();
     let mut labels = vec![None; points.len()];
     for at in order {
         let point = &points[at];
@@ -221,17 +266,29 @@ fn labels(points: &[Point], places: &[[f64; 2]], front: &[[f64; 2]], format: &Fo
             let [left, top, right, bottom] = format.area;
             area[0] >= left && area[1] >= top - 14.0 && area[2] <= right && area[3] <= bottom
         };
-        let costs = |area: &Area| {
-            let on_marks = marks.iter().filter(|mark| overlap(area, mark)).count();
-            let on_labels = taken.iter().filter(|other| overlap(area, other)).count();
-            let on_lines = lines.iter().filter(|line| overlap(area, line)).count();
-            on_lines + ON_A_MARK * on_marks + 10_000 * on_labels + if fits(area) { 0 } else { 1_000_000 }
+        let leader = |label: &Label| {
+            let [x, y] = places[at];
+            label.led.then_some([[x, y], [x + label.dx, y + label.dy]])
         };
-        let Some((best, area)) = candidates.into_iter().min_by_key(|(_, area)| costs(area)) else { continue };
+        let costs = |(label, area): &(Label, Area)| {
+            let own = leader(label);
+            let of = [
+                lines.iter().filter(|line| passes(line, area)).count(),
+                leaders.iter().filter(|other| crosses(other, area)).count()
+                    + taken.iter().filter(|other| own.is_some_and(|own| crosses(&own, other))).count(),
+                marks.iter().filter(|mark| overlap(area, mark)).count(),
+                taken.iter().filter(|other| overlap(area, other)).count(),
+                usize::from(!fits(area)),
+            ];
+            of.iter().zip(COSTS).map(|(count, cost)| count * cost).sum::<usize>()
+        };
+        let Some(best) = candidates.into_iter().min_by_key(costs) else { continue };
         // A default is always named.
-        if point.qualities.is_empty() && costs(&area) >= ON_A_MARK {
+        if point.qualities.is_empty() && costs(&best) >= NO_ROOM {
             continue;
         }
+        let (best, area) = best;
+        leaders.extend(leader(&best));
         taken.push(area);
         labels[at] = Some(Label { text, ..best });
     }
@@ -284,7 +341,7 @@ mod tests {
             (0..12).map(|k| point("walk-8+tracker", 1.0 + 0.2 * f64::from(k), 0.5, true, &[])).collect();
         let defaults = [point("a", 1.0, 0.9, true, &["fast"]), point("b", 1.1, 0.89, true, &["good", "best"])];
         let points = [many, defaults.into()].concat();
-        for drawing in drawings(&points) {
+        for drawing in drawings(&points, None) {
             for placed in &drawing.points {
                 let share = (placed.point.ms / drawing.x0).ln() / (drawing.x1 / drawing.x0).ln();
                 assert!((drawing.left + share * (drawing.right - drawing.left) - placed.x).abs() < 0.06);
@@ -313,7 +370,35 @@ mod tests {
 
     #[test]
     fn the_front_is_a_staircase() {
-        assert_eq!(stairs(&[[10.0, 50.0], [30.0, 80.0]], 5.0, 99.0), "M10 5H10V50H30V80H99");
-        assert_eq!(stairs(&[], 5.0, 99.0), "");
+        let corners = stairs(&[[10.0, 50.0], [30.0, 80.0]], 5.0, 99.0);
+        assert_eq!(corners, [[10.0, 5.0], [10.0, 50.0], [30.0, 50.0], [30.0, 80.0], [99.0, 80.0]]);
+        assert_eq!(path(&corners), "M10 5V50H30V80H99");
+        assert_eq!(path(&stairs(&[], 5.0, 99.0)), "");
+    }
+
+    #[test]
+    fn a_label_takes_a_place_off_the_front() {
+        // Both below the point on the left and above it on the right there is room.
+        let points = [point("one", 1.0, 0.9, true, &[]), point("two", 10.0, 0.3, true, &[])];
+        for drawing in drawings(&points, None).iter().filter(|drawing| drawing.name == "wide") {
+            let steps: Vec<[f64; 2]> = drawing.points.iter().map(|placed| [placed.x, placed.y]).collect();
+            let corners = stairs(&steps, drawing.top, drawing.right);
+            for placed in &drawing.points {
+                let label = placed.label.as_ref().expect("there is room");
+                let width = LETTER[0] * label.text.len() as f64;
+                let left = placed.x + label.dx - if label.anchor == "end" { width } else { 0.0 };
+                let [above, below] = [-0.5, 0.5].map(|half| placed.y + label.dy + half * LETTER[1]);
+                let area = [left, above, left + width, below];
+                let on = corners.windows(2).filter(|pair| passes(&[pair[0], pair[1]], &area)).count();
+                assert_eq!(on, 0, "{}: {area:?} on {corners:?}", label.text);
+            }
+        }
+    }
+
+    #[test]
+    fn labels_of_an_axis_do_not_touch() {
+        let tick = |at: f64, text: &str| Tick { value: 1.0, at, text: text.to_owned() };
+        let kept = apart([tick(10.0, "500"), tick(40.0, "1000"), tick(60.0, "2000"), tick(95.0, "5000")].into_iter());
+        assert_eq!(kept.iter().map(|tick| tick.text.as_str()).collect::<Vec<_>>(), ["500", "2000"]);
     }
 }

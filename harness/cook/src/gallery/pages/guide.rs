@@ -1,7 +1,7 @@
 //! A guide's page.
 
 use super::super::{
-    Parts,
+    Parts, choices,
     guides::Guide,
     markdown::{self, Heading},
     take,
@@ -26,6 +26,8 @@ struct Values<'a> {
     /// Shaders of the rungs, on the page that says which to choose.
     takes: Vec<take::Group<'a>>,
     live: Vec<&'a super::super::LivePage>,
+    /// The row of the rung for 60 frames a second.
+    sixty: Option<&'a str>,
 }
 
 /// Returns the page of a guide.
@@ -41,6 +43,7 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
         ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
         takes: if of.name == CHOOSING { take::groups(&parts.takes) } else { Vec::new() },
         live: parts.live.iter().collect(),
+        sixty: parts.takes.iter().find(|take| take.choice.serves(choices::IN_A_SIXTIETH)).map(|take| take.id.as_str()),
     };
     let body = templates::render("guide.html", values);
     let path = address("guides", of.name);

@@ -1,6 +1,9 @@
 //! The page that one sees first.
 
-use super::super::{Parts, pictures::Shown, techniques::TECHNIQUES, templates, text};
+use super::super::choices::{self, Choice, Heading};
+use super::super::ladder::Kind;
+use super::super::techniques::{TECHNIQUES, Technique};
+use super::super::{Parts, pictures::Shown, take::Take, templates, text};
 use super::Page;
 use crate::cookbook;
 use serde::Serialize;
@@ -11,18 +14,20 @@ struct Card<'a> {
     name: &'a str,
     title: &'a str,
     summary: &'a str,
-    choice: Option<&'a super::super::choices::Choice>,
+    choice: Option<&'a Choice>,
+    heading: Option<Heading>,
     live: Option<&'a str>,
     picture: Option<&'a Shown>,
 }
 
 /// Returns the page.
 pub fn page(parts: &Parts<'_>) -> Page {
-    let card = |of: &'static crate::gallery::techniques::Technique| Card {
+    let card = |of: &'static Technique| Card {
         name: of.name,
         title: of.title,
         summary: of.summary,
         choice: default(parts, of),
+        heading: of.ladders.first().and_then(|name| Kind::named(name)).map(choices::heading),
         live: parts.live_scene(of),
         picture: parts.picture(of.hero),
     };
@@ -50,11 +55,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
 }
 
 /// Returns the rung that a technique has without a choice, on its first ladder.
-fn default<'a>(
-    parts: &'a Parts<'_>,
-    of: &crate::gallery::techniques::Technique,
-) -> Option<&'a super::super::choices::Choice> {
-    let of_ladder =
-        |take: &&super::super::take::Take| of.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
+fn default<'a>(parts: &'a Parts<'_>, of: &Technique) -> Option<&'a Choice> {
+    let of_ladder = |take: &&Take| of.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
     parts.takes.iter().find(of_ladder).map(|take| &take.choice)
 }

@@ -157,13 +157,15 @@ fn a_link_says_what_it_asks_for() {
     let mut said = |fragment: &str| {
         page.open("about:blank").expect("an empty page");
         page.open(&format!("{}#{fragment}", site().address("live/brilliant.html"))).expect("a page");
-        page.evaluate("document.querySelector('.live-note').textContent").expect("a note")
+        let asked = "(() => { const asked = document.querySelector('.live-asked'); return asked.hidden ? '' : asked.textContent; })()";
+        page.evaluate(asked).expect("a text")
     };
     assert_eq!(
-        said("rung=walk-4&index=1.5&dispersion=off&unknown=1"),
-        "This link asks for rung walk-4, index 1.5, dispersion off. Run it to see that."
+        said("rung=walk-4&other=surface&index=1.5&dispersion=off&dispersion=2&view=60,40,3.2&unknown=1&environment=x"),
+        "This link asks for walk-4; surface beside it; Index of refraction: 1.5; dispersion: an index for each colour: off; \
+            Dispersion, as a factor of the mineral’s: 2; another view. Run it to see that."
     );
-    for of_the_page in ["", "compare=convex,walk-4,walk-2", "ladder-convex", "unknown=1"] {
+    for of_the_page in ["", "compare=convex,walk-4,walk-2", "ladder-convex", "unknown=1", "rung=none", "index=x"] {
         assert_eq!(said(of_the_page), "", "{of_the_page}");
     }
 }

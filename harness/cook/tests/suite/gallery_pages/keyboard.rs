@@ -147,6 +147,40 @@ fn a_plots_device_is_chosen_by_arrows() {
     assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
 }
 
+/// Whether the large picture is that of the link at a place, which stands there once it has come.
+fn is_large(at: usize) -> String {
+    format!(
+        "(() => {{
+            const links = [...new Set([...document.querySelectorAll('a.picture')].map((link) => link.href))];
+            const image = document.querySelector('dialog[open] img');
+            return image?.complete && image.naturalWidth > 0 && image.src === links[{at}];
+        }})()"
+    )
+}
+
+/// A finger to the left goes on, as a page is turned, one to the right back; one that goes down does neither.
+#[test]
+fn pictures_go_on_by_a_finger() {
+    let Some(mut page) = opened("techniques/gems.html") else { return };
+    page.evaluate("document.querySelector('a.picture').click()").expect("a picture");
+    page.wait_for(&is_large(0), SOON).expect("a large picture");
+    for (to, place) in [([150.0, 310.0], 1), ([360.0, 420.0], 1), ([270.0, 300.0], 1), ([420.0, 290.0], 0)] {
+        let mut touch = |kind: &str, points: Value| {
+            page.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).expect(kind);
+        };
+        touch("touchStart", json!([{ "x": 300.0, "y": 300.0 }]));
+        touch("touchMove", json!([{ "x": to[0], "y": to[1] }]));
+        touch("touchEnd", json!([]));
+        page.wait_for(&is_large(place), SOON).unwrap_or_else(|error| panic!("{to:?}: {error}"));
+        let count = page.evaluate("document.querySelector('.lightbox-place').textContent").expect("a place");
+        assert!(
+            count.as_str().is_some_and(|count| count.starts_with(&format!("{} of ", place + 1))),
+            "{to:?}: {count}"
+        );
+    }
+    assert_eq!(page.problems().expect("a list"), [] as [String; 0]);
+}
+
 /// A picture opens large, Right goes on to the next, Escape closes it, and the focus is where it was.
 #[test]
 fn pictures_open_go_on_and_close_by_keys() {
@@ -154,38 +188,18 @@ fn pictures_open_go_on_and_close_by_keys() {
     page.evaluate("[...document.querySelectorAll('a.picture')].forEach((link, at) => { link.dataset.at = at; }); document.querySelector('a.picture').focus()")
         .expect("pictures");
     page.press("Enter").expect("pressed");
-    // The small picture stands there until the large one has come, which is the link's.
-    let shown = |at: usize| {
-        format!(
-            "(() => {{
-                const links = [...new Set([...document.querySelectorAll('a.picture')].map((link) => link.href))];
-                const image = document.querySelector('dialog[open] img');
-                return image?.complete && image.naturalWidth > 0 && image.src === links[{at}];
-            }})()"
-        )
-    };
-    page.wait_for(&shown(0), SOON).expect("a large picture");
+    page.wait_for(&is_large(0), SOON).expect("a large picture");
     assert!(
         page.evaluate("location.pathname").expect("a value").as_str().is_some_and(|path| path.ends_with("gems.html"))
     );
     page.press("ArrowRight").expect("pressed");
-    page.wait_for(&shown(1), SOON).expect("the next picture");
+    page.wait_for(&is_large(1), SOON).expect("the next picture");
     // Its caption says what drew it, and how to draw it again.
     let caption =
         page.evaluate("document.querySelector('dialog[open] .lightbox-caption').textContent").expect("a caption");
     assert!(caption.as_str().is_some_and(|caption| caption.contains("./cook")), "{caption}");
     page.press("ArrowLeft").expect("pressed");
-    page.wait_for(&shown(0), SOON).expect("back again");
-    // A finger to the left goes on, as a page is turned; one that goes down does not.
-    for to in [[120.0, 300.0], [320.0, 420.0]] {
-        let mut touch = |kind: &str, points: Value| {
-            page.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).expect(kind);
-        };
-        touch("touchStart", json!([{ "x": 300.0, "y": 300.0 }]));
-        touch("touchMove", json!([{ "x": to[0], "y": to[1] }]));
-        touch("touchEnd", json!([]));
-        page.wait_for(&shown(1), SOON).expect("the next picture");
-    }
+    page.wait_for(&is_large(0), SOON).expect("back again");
     page.press("Escape").expect("pressed");
     page.wait_for("!document.querySelector('dialog[open]')", SOON).expect("it closes");
     assert_eq!(page.evaluate("document.activeElement.dataset.at").expect("the focus"), "0");
