@@ -197,3 +197,14 @@ fn the_executor_has_at_most_500_lines() {
     let drawing = include_str!("../assets/live.js");
     assert!(executor.lines().count() + drawing.lines().count() <= 500);
 }
+
+#[test]
+fn a_rung_is_drawn_on_the_page_that_begins_with_it() {
+    let page = |ladder: &str, rung: &str| page_of(ladder, rung);
+    assert_eq!(page("convex", "walk-8+tracker").as_deref(), Some("live/brilliant.html"));
+    assert_eq!(page("convex", "walk-4+tracker").as_deref(), Some("live/brilliant.html#rung=walk-4%2Btracker"));
+    // The bunny comes first, and has it too.
+    assert_eq!(page("translucent", "diffusion-64").as_deref(), Some("live/dragon.html"));
+    assert_eq!(page("translucent", "godunov-32").as_deref(), Some("live/bunny.html#rung=godunov-32"));
+    assert_eq!(page("concave", "bvh-8+tracker"), None);
+}

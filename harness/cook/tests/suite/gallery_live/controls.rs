@@ -62,6 +62,8 @@ fn a_wipe_stands_between_two_rungs() {
     let other = shown(&mut page);
     assert!(differing(&one, &other) > 0.05, "two rungs look the same");
     set(&mut page, &format!("state.rung = {rung}; state.other = 'proxy-4+tracker'; state.wipe = 25"));
+    let sides = "[...document.querySelectorAll('.live-side:not([hidden])')].map((side) => side.textContent)";
+    assert_eq!(page.evaluate(sides).expect("names"), json!([rung, "proxy-4+tracker"]));
     let both = shown(&mut page);
     let side = SIDE as usize;
     let split = side / 4;
@@ -133,6 +135,11 @@ fn the_address_holds_the_state() {
     page.evaluate("document.querySelector('.compare-swap').click()").expect("a button");
     let kept = page.evaluate("location.hash").expect("a hash");
     assert_eq!(kept.as_str().map(|kept| kept.trim_start_matches('#')), Some(hash.as_str()));
+    // What is sent is the address.
+    page.grant_clipboard().expect("granted");
+    page.click("[data-do=link]").expect("a button");
+    let link = page.wait_for("navigator.clipboard.readText()", SOON).expect("a link");
+    assert_eq!(link, page.evaluate("location.href").expect("an address"));
     begin(&mut page, "brilliant", &hash);
     page.wait_for("!document.querySelector('.live canvas').hidden", super::DRAWN).expect("started");
     page.evaluate("gallery.live.ready").expect("drawn");
