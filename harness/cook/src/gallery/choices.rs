@@ -111,7 +111,7 @@ pub fn all() -> Vec<Choice> {
 /// Returns what the figures of a ladder are of.
 pub fn heading(kind: &Kind) -> Heading {
     let on_gpu = OnGpu::of(kind);
-    let (side, views) = kind.measured(&on_gpu.report);
+    let (_, views) = kind.measured(&on_gpu.report);
     let measure = kind.technique.ladder().map_or("", |ladder| ladder.measure);
     Heading {
         title: kind.title,
@@ -121,7 +121,7 @@ pub fn heading(kind: &Kind) -> Heading {
         gpu: on_gpu.name(),
         gpu_size: on_gpu.size(kind),
         cpu: CPU,
-        cpu_size: format!("{side} × {side}"),
+        cpu_size: kind.size(&on_gpu.report),
     }
 }
 

@@ -64,9 +64,6 @@ struct Shown<'a> {
     error: &'a str,
     /// By the committed ladder's times, and by those of the GPU.
     plots: Vec<Plot<'a>>,
-    /// The devices and the sizes of the pictures that they drew.
-    cpu: String,
-    gpu: String,
     /// The report's file, and the command that measures it again.
     report: &'a str,
     rows: Vec<Row<'a>>,
@@ -160,6 +157,7 @@ impl<'a> Shown<'a> {
             Some(format!("{root}{}", picture.file))
         };
         let on_gpu = OnGpu::of(kind);
+        let hull = kind.ladder().map(Ladder::hull).unwrap_or_default();
         let filled = |rung: &str| report.ms(rung, "filled", "time").filter(|_| kind.name == "convex");
         Self {
             name: kind.name,
@@ -167,8 +165,6 @@ impl<'a> Shown<'a> {
             paragraph: kind.paragraph,
             error: kind.error,
             plots: plots(kind, report, href),
-            cpu: CPU.to_owned(),
-            gpu: format!("{}, {}", on_gpu.name(), on_gpu.size(kind)),
             report: kind.report,
             filled: steps.iter().any(|step| filled(&step.rung).is_some()),
             rows: steps
@@ -181,7 +177,7 @@ impl<'a> Shown<'a> {
                     filled: filled(&step.rung).map_or_else(String::new, |ms| format!("{ms:.0}")),
                     gpu: on_gpu.ms(&step.rung).map_or_else(String::new, |ms| format!("{ms:.1}")),
                     qualities: qualities(kind, &step.rung).join(", "),
-                    front: kind.ladder().is_some_and(|ladder| is_front(ladder, step)),
+                    front: is_front(&hull, step),
                     paper: kind.paper.contains(&step.rung.as_str()),
                     href: href(&step.rung),
                 })
@@ -241,7 +237,8 @@ fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
 /// Returns the plots of a ladder: by the committed times, and by those of the GPU.
 fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<String>) -> Vec<Plot<'a>> {
     let drawings = |ladder: &Ladder, steps: &[&Step], limit: Option<f64>| {
-        let points: Vec<Point> = steps.iter().map(|step| point(kind, ladder, step, href(&step.rung))).collect();
+        let hull = ladder.hull();
+        let points: Vec<Point> = steps.iter().map(|step| point(kind, &hull, step, href(&step.rung))).collect();
         plot::drawings(&points, limit)
     };
     let series = |steps: &[&Step]| {
@@ -253,10 +250,9 @@ fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<Stri
         .collect()
     };
     let (Some(ladder), on_gpu) = (kind.ladder(), OnGpu::of(kind)) else { return Vec::new() };
-    let (side, _) = kind.measured(report);
     let committed = Plot {
         device: CPU.to_owned(),
-        size: format!("{side} × {side}"),
+        size: kind.size(report),
         adapter: &report.adapter,
         measured: measured(kind, report),
         drawings: drawings(ladder, &kind.steps(), None),
@@ -306,11 +302,11 @@ fn measured(kind: &Kind, report: &Report) -> String {
     )
 }
 
-fn is_front(ladder: &Ladder, step: &Step) -> bool {
-    ladder.hull().iter().any(|other| other.rung == step.rung)
+fn is_front(hull: &[&Step], step: &Step) -> bool {
+    hull.iter().any(|other| other.rung == step.rung)
 }
 
-fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Point {
+fn point(kind: &Kind, hull: &[&Step], step: &Step, href: Option<String>) -> Point {
     let qualities = qualities(kind, &step.rung);
     let default =
         if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
@@ -319,7 +315,7 @@ fn point(kind: &Kind, ladder: &Ladder, step: &Step, href: Option<String>) -> Poi
         ms: four_digits(step.ms),
         error: four_digits(step.error),
         series: kind.series_of(&step.rung) + 1,
-        front: is_front(ladder, step),
+        front: is_front(hull, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
         qualities,
         paper: kind.paper.contains(&step.rung.as_str()),

@@ -110,12 +110,13 @@ pub fn take(choice: &Choice) -> Result<Take, TakeError> {
     let Fitted { text, command } = fitted(recipe, drawn.shader.overrides()).map_err(fault)?;
     // The text itself begins with a module's header, which is the same for many rungs.
     let text = ["// The rung ", &choice.rung, ", by ", &command, "\n\n", &text].concat();
+    let id = ["rung_", choice.ladder, "_", &choice.rung.replace('+', "_")].concat();
     Ok(Take {
         recipe: recipe.name,
         command: [&command, " --out ", recipe.name, ".wgsl"].concat(),
-        source: ["source/rung_", choice.ladder, "_", &choice.rung.replace('+', "_")].concat(),
+        source: ["source/", &id].concat(),
         lines: text.lines().count(),
-        id: ["take-", choice.ladder, "-", &choice.rung.replace('+', "_")].concat(),
+        id,
         live: live::page_of(choice.ladder, &choice.rung),
         text,
         choice: choice.clone(),

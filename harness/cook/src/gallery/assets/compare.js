@@ -186,7 +186,7 @@
     const figures = all('figure.plot', ladder).filter((figure) => figure.querySelector('svg.plot[data-live]'));
     const choices = all('.plot-devices input', ladder);
     const of = ({ dataset }) => choices.find(({ value }) => value === dataset.device);
-    if (choices.length > 0 && !figures.some((figure) => of(figure).checked)) of(figures[0]).checked = true;
+    if (!figures.some((figure) => of(figure).checked)) of(figures[0]).checked = true;
     return figures.flatMap((figure) => all('svg.plot', figure)).map((svg) => plotted(svg, ms, error, label));
   };
 

@@ -60,45 +60,39 @@ function parsed(fragment) {
   return view.length === 3 && view.every(Number.isFinite) ? { ...state, ...placed(...view) } : state;
 }
 
-/** What a fragment asks for, in words: by the controls alone, for the scene's data may not have come yet. Fragments of
- * headings, pictures and comparisons ask for nothing. */
+/** What a fragment asks for: of each wish its control, value and words. By the controls alone, for the scene's data may
+ * not have come yet; fragments of headings, pictures and comparisons ask for nothing. */
 function asked(fragment) {
-  const label = (control) => control.labels[0].textContent.trim();
-  const words = ([name, value]) => {
+  const wish = ([name, value]) => {
     const isNumber = Number.isFinite(Number.parseFloat(value));
-    if (name === 'view') return 'another view';
-    if (name === 'wipe') return isNumber && `the wipe at ${value} %`;
+    const of = (control, words) => ({ control, value, words });
+    const labelled = (control) => of(control, `${control.labels[0].textContent.trim()}: ${value}`);
+    if (name === 'view') return of(null, 'another view');
+    if (name === 'wipe') return isNumber && of(input(name), `the wipe at ${value} %`);
     if (name === 'rung' || name === 'other') {
       const isKnown = [...input(name).options].some((option) => option.value === value);
-      return isKnown && (name === 'rung' ? value : `${value} beside it`);
+      return isKnown && of(input(name), name === 'rung' ? value : `${value} beside it`);
     }
     // An effect and its slider may have one name.
     const toggle = all('[data-toggle]').find((box) => box.name === name);
-    if (toggle && (value === 'on' || value === 'off')) return `${label(toggle)}: ${value}`;
+    if (toggle && (value === 'on' || value === 'off')) return labelled(toggle);
     const slider = all('[data-slider] input').find((range) => range.name === name);
-    return slider && isNumber && `${label(slider)}: ${value}`;
+    return slider && isNumber && labelled(slider);
   };
   const pairs = fragment.includes('=') ? [...new URLSearchParams(fragment)] : [];
-  return pairs.map(words).filter(Boolean);
+  return pairs.map(wish).filter(Boolean);
 }
 
 /** Says what the link asks for, as long as it is not drawn. */
 function reflectLink() {
   const wishes = live ? [] : asked(location.hash.slice(1));
   one('.live-asked').hidden = wishes.length === 0;
-  one('.live-asked').textContent = `This link asks for ${wishes.join('; ')}. Run it to see that.`;
+  one('.live-asked').textContent = `This link asks for ${wishes.map(({ words }) => words).join('; ')}. Run it to see that.`;
   if (live) return;
   // The controls that need no data show it already.
-  const pairs = [...new URLSearchParams(location.hash.slice(1))];
-  for (const name of ['rung', 'other']) {
-    const options = [...input(name).options];
-    const value = pairs.find(([key]) => key === name)?.[1];
-    input(name).value = options.some((option) => option.value === value) ? value : options[0].value;
-  }
-  for (const box of all('[data-toggle]')) {
-    const word = pairs.find(([key, value]) => key === box.name && (value === 'on' || value === 'off'))?.[1];
-    box.checked = word ? word === 'on' : box.defaultChecked;
-  }
+  const valueOf = (control) => wishes.find((wish) => wish.control === control)?.value;
+  for (const menu of ['rung', 'other'].map(input)) menu.value = valueOf(menu) ?? menu.options[0].value;
+  for (const box of all('[data-toggle]')) box.checked = valueOf(box) ? valueOf(box) === 'on' : box.defaultChecked;
 }
 
 /** The fragment that holds a state: what is not as at the start. */

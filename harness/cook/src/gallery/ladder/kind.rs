@@ -218,6 +218,12 @@ impl Kind {
         Report::from_json(self.report, &std::fs::read_to_string(&path).map_err(unfit)?)
     }
 
+    /// Returns the size of the timed pictures, in words.
+    pub fn size(&self, report: &Report) -> String {
+        let (side, _) = self.measured(report);
+        format!("{side} × {side}")
+    }
+
     /// Returns the side of the timed pictures, and the views over which errors and times are averaged.
     pub fn measured<'r>(&self, report: &'r Report) -> (u64, Vec<&'r str>) {
         match self.technique {

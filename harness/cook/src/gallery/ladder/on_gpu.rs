@@ -78,8 +78,7 @@ impl OnGpu {
 
     /// Returns the size of the pictures that it drew, in words.
     pub fn size(&self, kind: &Kind) -> String {
-        let (side, _) = kind.measured(&self.report);
-        if self.fills { format!("{}, filled", self.report.size()) } else { format!("{side} × {side}") }
+        if self.fills { format!("{}, filled", self.report.size()) } else { kind.size(&self.report) }
     }
 
     /// Returns the measured rungs that differ from this one in their hits or in their colours alone.
