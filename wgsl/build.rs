@@ -1,4 +1,4 @@
-//! Lists the folder: a module, recipe, part or release exists as soon as its file does.
+//! Lists the folder: a module, recipe or part exists as soon as its file does.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -27,14 +27,7 @@ fn main() -> std::io::Result<()> {
     list(&mut text, "Every module", "MODULES", "Module", &files(&root, "wgsl")?, more);
     list(&mut text, "Every recipe", "RECIPES", "Recipe", &files(&root.join("recipes"), "wgsl")?, |_| String::new());
     list(&mut text, "Every part", "PARTS", "Part", &files(&root.join("recipes/parts"), "wgsl")?, |_| String::new());
-    let releases: Vec<String> =
-        by_number(files(&root.join("releases"), "json")?).iter().map(|file| include(file)).collect();
-    let _ = writeln!(
-        text,
-        "/// The hashes of each release's functions, the oldest first, as JSON.\npub const RELEASES: &[&str] = &[{}];",
-        releases.join(", ")
-    );
-    for folder in ["", "naive", "recipes", "recipes/parts", "releases"] {
+    for folder in ["", "naive", "recipes", "recipes/parts"] {
         println!("cargo:rerun-if-changed={}", root.join(folder).display());
     }
     std::fs::write(out.join("folder.rs"), text)
@@ -51,12 +44,6 @@ fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
     }
     found.sort();
     Ok(found)
-}
-
-/// Sorts releases by version: 0.10.0 comes after 0.9.0.
-fn by_number(mut files: Vec<PathBuf>) -> Vec<PathBuf> {
-    files.sort_by_key(|file| stem(file).split('.').map(|part| part.parse().unwrap_or(0)).collect::<Vec<u32>>());
-    files
 }
 
 fn stem(file: &Path) -> &str {

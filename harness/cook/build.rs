@@ -1,5 +1,4 @@
-//! Lists the folder of techniques: a module's formulas are tested once its crate is there, and its page is
-//! shown once its WGSL is.
+//! Lists the folder of techniques: a module's formulas are tested once its crate is there.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -21,21 +20,6 @@ fn main() -> std::io::Result<()> {
         let _ = writeln!(text, "        lapidary_{name}::formulas::formulas(),");
     }
     text.push_str("    ]\n}\n");
-    let docs = root.join("../../docs");
-    let mut pages = String::from(
-        "/// Returns a module's page in Markdown.\nfn page(name: &str) -> &'static str {\n    match name {\n",
-    );
-    for entry in std::fs::read_dir(root.join("../../wgsl"))? {
-        let path = entry?.path();
-        let Some(name) = path.file_stem().and_then(|name| name.to_str()) else { continue };
-        if path.extension().is_some_and(|extension| extension == "wgsl") {
-            let page = docs.join(format!("{name}.md"));
-            let _ = writeln!(pages, "        {name:?} => include_str!({:?}),", page.display().to_string());
-        }
-    }
-    pages.push_str("        _ => \"\",\n    }\n}\n");
-    std::fs::write(out.join("pages.rs"), pages)?;
-    println!("cargo:rerun-if-changed={}", root.join("../../wgsl").display());
     println!("cargo:rerun-if-changed={}", crates.display());
     std::fs::write(out.join("modules.rs"), text)
 }

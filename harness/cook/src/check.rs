@@ -5,11 +5,10 @@ pub mod bounds;
 pub mod difference;
 pub mod guard;
 pub mod in_browser;
-pub mod record;
+pub mod seeds;
 pub mod user_file;
 
-use crate::cookbook::header::FunctionDoc;
-use crate::{cookbook, formulas, repository};
+use crate::formulas;
 use difference::Difference;
 use in_browser::InBrowser;
 use lapidary_assay::dispatch::signature::Signature;
@@ -26,6 +25,9 @@ use lapidary_assay::slack::allowance::Field;
 use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
 use lapidary_browser::{Adapter, Browser};
+use lapidary_cookbook as cookbook;
+use lapidary_cookbook::header::FunctionDoc;
+use lapidary_cookbook::repository;
 use lapidary_gpu::Gpu;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -135,11 +137,6 @@ pub struct Row {
     pub difference_input: Option<String>,
     /// Edges of the domain that no input reached.
     pub missed_edges: Vec<String>,
-    /// The newest release that contains the user's function; `None` (null) if no release does, or
-    /// if the cookbook's own function was checked.
-    pub release: Option<String>,
-    /// Changes to the function since that release.
-    pub changed_since: Vec<String>,
     /// The file in which the simplest failing input was stored; `None` (null) if there is none.
     pub kept_in: Option<String>,
     /// Wall-clock time in seconds.
@@ -148,7 +145,7 @@ pub struct Row {
     pub reproduce: String,
     /// The seeds of the inputs; each seed gives the same number of inputs.
     pub seeds: Vec<u64>,
-    /// The distribution from which the quantiles are computed; a [`record::Record`] stores it.
+    /// The distribution from which the quantiles are computed.
     #[serde(skip)]
     pub ulps: Histogram,
 }

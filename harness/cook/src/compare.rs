@@ -1,6 +1,5 @@
 //! Comparison of two picture files: how different they look, and how different their light is.
 
-use crate::snapshot;
 use glam::Vec3;
 use image::{DynamicImage, ImageDecoder as _, ImageReader, Limits};
 use std::path::{Path, PathBuf};
@@ -75,7 +74,7 @@ pub fn compare(reference: &Path, picture: &Path) -> Result<Difference, CompareEr
         let (path, reference) = (picture.to_owned(), reference.to_owned());
         return Err(CompareError::Size { path, found: found.size, reference, expected: truth.size });
     }
-    let flip = snapshot::flip_of_rgb(truth.size, &found.seen, &truth.seen).to_vec();
+    let flip = lapidary_flip::flip(truth.size, &truth.seen, &found.seen);
     let is_empty = truth.linear.iter().all(|pixel| pixel[3] == 0.0);
     let covered = (0..truth.linear.len()).filter(|place| is_empty || truth.linear[*place][3] > 0.0);
     let (mut sum, mut error, mut power, mut pixels) = (0.0, 0.0, 0.0, 0);

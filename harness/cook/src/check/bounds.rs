@@ -1,8 +1,8 @@
 //! Limits of a user's file, checked before a compiler sees it: both naga and driver compilers
 //! recurse as deeply as the text nests.
 
-use crate::text_file;
 use lapidary_assay::tokens::tokens;
+use lapidary_cookbook::text_file;
 use std::path::Path;
 
 /// Largest size of a file in bytes; all modules of the cookbook together have a fifth of it.

@@ -2,10 +2,9 @@
 //! else is in it.
 
 use super::{CheckError, bounds, select};
-use crate::cookbook::release::{History, Standing};
-use crate::cookbook::{self, Module};
 use lapidary_assay::dispatch;
 use lapidary_assay::formula::Formula;
+use lapidary_cookbook::{self as cookbook, Module};
 use lapidary_scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -26,8 +25,6 @@ pub struct Contents {
     pub formulas: Vec<&'static Formula>,
     /// One-line notes: functions that are missing or unknown, and other items that are not checked.
     pub notes: Vec<String>,
-    /// For each module with a function in the file: which release it is, and what was fixed since.
-    pub releases: Vec<Standing>,
 }
 
 impl UserFile {
@@ -78,14 +75,7 @@ impl UserFile {
             notes.extend(self.unknown(filter, &held));
             notes.extend(self.others(&ir));
         }
-        let standing = |module: &&Module| {
-            let of_module = |name: &&str| formulas.iter().any(|formula| formula.function == *name);
-            let names = module.functions.iter().map(|function| function.name.as_str());
-            let functions: Vec<&str> = names.filter(of_module).collect();
-            History::of_cookbook().standing(module.name, &functions, &self.text)
-        };
-        let releases = modules.iter().map(standing).collect();
-        Ok(Contents { formulas, notes, releases })
+        Ok(Contents { formulas, notes })
     }
 
     fn lacking(&self, module: &Module, asked: &[&Formula], held: &BTreeSet<&str>) -> Option<String> {

@@ -9,10 +9,9 @@ use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_assay::slack::Reassociation;
 use lapidary_browser::{Adapter, Browser};
 use lapidary_cook::check::guard::{self, Stage};
-use lapidary_cook::check::record::{self, Record};
+use lapidary_cook::check::seeds;
 use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
-use lapidary_cook::cookbook::release::Standing;
 use lapidary_render::file;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -60,14 +59,6 @@ pub(super) struct Arguments {
     /// each seed.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// File for the results, written as they come. If it exists from an interrupted run, this run
-    /// continues it.
-    #[arg(long, value_name = "FILE", conflicts_with = "wgsl")]
-    record: Option<PathBuf>,
-    /// Run nothing: show these records, such as those of all shards, as one; with --record, also
-    /// write it.
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["filter", "wgsl", "portable", "browser", "cases", "seed", "shard", "failures"])]
-    merge: Vec<PathBuf>,
     /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -109,13 +100,9 @@ struct Checked {
     about: String,
     rows: Vec<Row>,
     notes: Vec<String>,
-    releases: Vec<Standing>,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    if !arguments.merge.is_empty() {
-        return merged(arguments);
-    }
     if arguments.browser.is_some() && Browser::find().is_none() {
         return skipped(arguments);
     }
@@ -126,21 +113,20 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let formulas = check::select(arguments.filter.as_deref())?;
             let work = parts.iter().flat_map(|part| formulas.iter().map(|formula| (*formula, *part)));
             let whole: Vec<(&Formula, Settings)> = work.collect();
-            let count = whole.len();
             let work = Shard::share(arguments.shard, whole);
             let on = on(context, arguments)?;
             let regressions = arguments.failures.as_ref().map_or_else(check::failures, Regressions::in_folder);
-            let about = text::about(on);
-            let mut record = match &arguments.record {
-                Some(path) => {
-                    file::check_writable(path)?;
-                    Record::open(path, &about, settings.cases, count).map_err(Failure)?
-                }
-                None => Record::new(&about, settings.cases, count),
-            };
             let bench = Bench { on, source: Source::Cookbook, regressions: Some(&regressions), stage: None };
-            in_parts(&bench, work, &mut record, arguments.record.as_deref())?;
-            Checked { about, rows: record.in_order().rows, ..Checked::default() }
+            bench.prepare(work.iter().map(|(formula, _)| *formula))?;
+            let mut rows: Vec<Row> = Vec::new();
+            bench.run(&work, |row| {
+                match rows.iter_mut().find(|earlier| earlier.function == row.function) {
+                    Some(earlier) => *earlier = std::mem::take(earlier).join(row),
+                    None => rows.push(row),
+                }
+                Ok::<_, Failure>(())
+            })?;
+            Checked { about: text::about(on), rows, ..Checked::default() }
         }
         Some(path) => {
             // Errors in the command line alone are reported before the file is read, and both
@@ -166,7 +152,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
     if json {
         // stdout holds only the array.
-        for line in text::notes(&checked.notes, &checked.releases) {
+        for line in text::notes(&checked.notes) {
             eprintln!("cook: {line}");
         }
         output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
@@ -176,15 +162,15 @@ fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
 
-/// Splits the inputs into parts of [`record::PART`], with consecutive seeds.
+/// Splits the inputs into parts of [`seeds::PART`], with consecutive seeds.
 fn parts(arguments: &Arguments) -> Vec<Settings> {
     let Arguments { cases, seed, wgsl, .. } = arguments;
     // A user's file takes only seconds.
-    if *cases <= record::PART || wgsl.is_some() {
+    if *cases <= seeds::PART || wgsl.is_some() {
         return vec![Settings { cases: *cases, seed: *seed }];
     }
-    (0..cases.div_ceil(record::PART))
-        .map(|part| Settings { cases: record::PART, seed: seed.wrapping_add(part) })
+    (0..cases.div_ceil(seeds::PART))
+        .map(|part| Settings { cases: seeds::PART, seed: seed.wrapping_add(part) })
         .collect()
 }
 
@@ -210,16 +196,13 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Runs the tests in order and passes each row to `keep`. `before` tests were already done in
-    /// another run.
+    /// Runs the tests in order and passes each row to `keep`.
     fn run<E: From<CheckError>>(
         &self,
         work: &[(&Formula, Settings)],
-        before: usize,
         mut keep: impl FnMut(Row) -> Result<(), E>,
     ) -> Result<(), E> {
-        let bar = super::progress::bar((before + work.len()) as u64, "checking");
-        bar.set_position(before as u64);
+        let bar = super::progress::bar(work.len() as u64, "checking");
         for (formula, settings) in work {
             if let Some(stage) = self.stage {
                 stage.running(&format!("running `{}`", formula.function));
@@ -231,43 +214,6 @@ impl Bench<'_> {
         bar.finish_and_clear();
         Ok(())
     }
-}
-
-/// Tests part by part, and writes the record after each.
-fn in_parts(
-    bench: &Bench<'_>,
-    work: Vec<(&'static Formula, Settings)>,
-    record: &mut Record,
-    path: Option<&Path>,
-) -> Result<(), Failure> {
-    let all = work.len();
-    let left: Vec<_> = work.into_iter().filter(|(formula, part)| !record.holds(formula.function, part.seed)).collect();
-    bench.prepare(left.iter().map(|(formula, _)| *formula))?;
-    let write = |record: &Record| path.map_or(Ok(()), |path| file::replace(path, record.text().as_bytes()));
-    // A shard without work has a record, too.
-    write(record)?;
-    bench.run(&left, all - left.len(), |row| {
-        record.add(row);
-        Ok::<_, Failure>(write(record)?)
-    })
-}
-
-/// Merges several records into one.
-fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let read = |path: &PathBuf| Record::read(path).map(|record| (path.display().to_string(), record));
-    let records = arguments.merge.iter().map(read).collect::<Result<_, _>>().map_err(Failure)?;
-    let record = Record::merge(records).map_err(Failure)?;
-    if let Some(path) = &arguments.record {
-        file::replace(path, record.text().as_bytes())?;
-    }
-    let (done, parts) = (record.done(), record.parts);
-    let outcome = said(&Checked { about: record.about, rows: record.rows, ..Checked::default() }, arguments.json)?;
-    if done < parts {
-        return Err(Failure(format!(
-            "{done} of {parts} parts are done; merge the other shards' records too, or go on with them"
-        )));
-    }
-    Ok(outcome)
 }
 
 /// Without a browser nothing can be checked in one: reports the number of functions skipped, or
@@ -307,24 +253,16 @@ fn of_file(
     regressions: Option<&Regressions>,
     stage: &Stage,
 ) -> Result<Checked, CheckError> {
-    let Contents { formulas, notes, releases } = file.contents(filter)?;
+    let Contents { formulas, notes } = file.contents(filter)?;
     let formulas = Shard::share(shard, formulas);
     let source = Source::Copy(&file.path, &file.text);
     let bench = Bench { on, source, regressions, stage: Some(stage) };
     bench.prepare(formulas.iter().copied())?;
     let work: Vec<_> = formulas.into_iter().map(|formula| (formula, settings)).collect();
     let mut rows = Vec::new();
-    bench.run(&work, 0, |row| {
+    bench.run(&work, |row| {
         rows.push(row);
         Ok::<_, CheckError>(())
     })?;
-    for row in &mut rows {
-        for standing in releases.iter().filter(|standing| standing.module == row.module) {
-            if let Some(origin) = standing.origins.iter().find(|origin| origin.function == row.function) {
-                row.release.clone_from(&origin.release);
-                row.changed_since.clone_from(&origin.changes);
-            }
-        }
-    }
-    Ok(Checked { about: String::new(), rows, notes, releases })
+    Ok(Checked { about: String::new(), rows, notes })
 }

@@ -2,8 +2,8 @@
 
 use super::{Failure, Outcome, output};
 use lapidary_assay::dispatch::{self, KernelModule};
-use lapidary_cook::cookbook::marks::{self, effects};
-use lapidary_cook::cookbook::{self, Module};
+use lapidary_cookbook::marks::{self, effects};
+use lapidary_cookbook::{self as cookbook, Module};
 use lapidary_render::file;
 use lapidary_scene::nearest;
 use lapidary_translate::declarations::{declarations, functions, of_functions};

@@ -3,7 +3,8 @@
 use super::{Failure, Outcome, output};
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
-use lapidary_cook::cookbook;
+use lapidary_cookbook as cookbook;
+
 use lapidary_plan::ladder::Step;
 use lapidary_plan::{Quality, Rung, Technique};
 use lapidary_scene::{BUILT_IN, BuiltIn, PRESETS, Preset};

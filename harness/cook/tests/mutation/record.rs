@@ -1,7 +1,6 @@
 //! Record of the last whole run: for each module, a hash of everything that its score depends on.
 //! If the hash is the same, the score is the same.
 
-use lapidary_cook::cookbook::release::text_hash;
 use lapidary_gpu::Gpu;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -15,7 +14,7 @@ const ENGINE: [&str; 12] = [
     "harness/assay/Cargo.toml",
     "harness/assay/src",
     "harness/cook/src/check.rs",
-    "harness/cook/src/cookbook",
+    "harness/cookbook/src",
     "harness/cook/tests/mutation/main.rs",
     "harness/cook/tests/mutation/record.rs",
     "harness/gpu/Cargo.toml",
@@ -107,6 +106,14 @@ fn crates_of(module: &str) -> Vec<String> {
     crates.sort();
     crates.dedup();
     crates
+}
+
+/// Hash of a text (FNV-1a, 64 bits); line endings are ignored.
+fn text_hash(text: &str) -> String {
+    let bytes = text.lines().flat_map(|line| line.bytes().chain([0]));
+    let hash =
+        bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:016x}")
 }
 
 /// Returns one hash of all files below these paths, with their names.

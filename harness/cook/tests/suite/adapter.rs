@@ -1,8 +1,8 @@
 //! A missing adapter is an error, never another adapter and never a pass.
 
-use crate::gpu;
-use crate::program::{cook, cook_in};
 use lapidary_gpu::{AdapterChoice, Gpu};
+use lapidary_testing::gpu;
+use lapidary_testing::program::{cook, cook_in};
 
 #[test]
 fn an_unknown_adapter_is_named_with_what_there_is() {

@@ -1,8 +1,8 @@
 //! Bad usage and bad input: exit code 2, one clear line that names what is wrong, nothing on stdout, no file left behind.
 
-use crate::program::cook;
 use base64::Engine as _;
 use lapidary_scene::{Scene, glb};
+use lapidary_testing::program::cook;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

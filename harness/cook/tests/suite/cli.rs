@@ -1,9 +1,9 @@
 //! `cook` does as its help says.
 
-use crate::program::{cook, folder, succeeds};
 use lapidary_assay::dispatch;
-use lapidary_cook::cookbook;
+use lapidary_cookbook as cookbook;
 use lapidary_scene::{Scene, glb, gltf};
+use lapidary_testing::program::{cook, folder, succeeds};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -521,7 +521,7 @@ fn negative_radiance_is_told_and_taken_as_none() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_thousand_gems_take_little_memory() {
-    if !crate::on_lavapipe("other drivers take memory of their own") {
+    if !lapidary_testing::on_lavapipe("other drivers take memory of their own") {
         return;
     }
     let folder = folder();

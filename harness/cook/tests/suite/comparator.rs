@@ -1,7 +1,6 @@
 //! The comparison and the search for counterexamples fail when they must. A suite whose comparator
 //! accepts NaN, or whose generator misses its edges, checks nothing.
 
-use crate::gpu;
 use glam::{DVec3, Vec3};
 use lapidary_assay::accuracy_line::{Bound, FieldBound};
 use lapidary_assay::draws::Draws;
@@ -12,6 +11,7 @@ use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::{Tolerance, Verdict};
 use lapidary_cook::check::{self, Source};
+use lapidary_testing::gpu;
 
 const FLOAT: Shape = Shape::Scalar(Scalar::F32);
 const FLAG: Shape = Shape::Scalar(Scalar::Bool);
@@ -375,7 +375,7 @@ fn a_right_formula_passes() {
 
 #[test]
 fn a_formula_that_is_wrong_in_one_octant_is_caught_there() {
-    if !crate::on_lavapipe("mirrors are compared on the reference device alone") {
+    if !lapidary_testing::on_lavapipe("mirrors are compared on the reference device alone") {
         return;
     }
     for wrong in [
@@ -442,7 +442,7 @@ fn a_broken_invariant_is_reported_by_name() {
 
 #[test]
 fn a_broken_pair_is_reported_by_name() {
-    if !crate::on_lavapipe("pairs are compared on the reference device alone") {
+    if !lapidary_testing::on_lavapipe("pairs are compared on the reference device alone") {
         return;
     }
     let formula = formula(MODULE, FUNCTION, right_mirror, right_oracle, inputs)
@@ -462,7 +462,7 @@ fn a_broken_pair_is_reported_by_name() {
 
 #[test]
 fn kept_failures_are_replayed_before_all_others() {
-    if !crate::on_lavapipe("mirrors are compared on the reference device alone") {
+    if !lapidary_testing::on_lavapipe("mirrors are compared on the reference device alone") {
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -3,7 +3,7 @@
 
 use lapidary_assay::dispatch;
 use lapidary_assay::value::Value;
-use lapidary_cook::cookbook;
+use lapidary_cookbook as cookbook;
 use naga::{Expression, Handle, Literal, Module};
 use std::collections::BTreeMap;
 

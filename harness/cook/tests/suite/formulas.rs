@@ -4,12 +4,12 @@
 use lapidary_assay::property::{Check, DEFAULT_CASES, Settings};
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
-use lapidary_cook::seed::SuiteSeed;
+use lapidary_testing::seed::SuiteSeed;
 
 /// Returns a line for each formula that does not hold. It ends with the command that runs the same
 /// inputs again.
 fn faults(seed: u64) -> Vec<String> {
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let mut faults = Vec::new();
     for formula in formulas::all() {
         let run = |cases| {
@@ -43,15 +43,15 @@ fn faults(seed: u64) -> Vec<String> {
 
 #[test]
 fn every_formula_holds_over_its_domain() {
-    let faults = faults(super::seed());
+    let faults = faults(lapidary_testing::seed());
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
 /// Checks the random inputs only: promises and branches do not depend on a rare input.
 #[test]
 fn every_formula_holds_over_its_domain_from_a_second_seed() {
-    super::seed();
-    let gpu = super::gpu();
+    lapidary_testing::seed();
+    let gpu = lapidary_testing::gpu();
     let second = SuiteSeed::of_environment().expect("read above").second();
     let mut faults = Vec::new();
     for formula in formulas::all() {

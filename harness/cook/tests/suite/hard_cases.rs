@@ -9,10 +9,10 @@ use lapidary_cook::formulas;
 
 #[test]
 fn each_stable_form_holds_and_each_naive_form_fails() {
-    if !crate::on_lavapipe("limits and naive errors are stated for it; cook check tests the others") {
+    if !lapidary_testing::on_lavapipe("limits and naive errors are stated for it; cook check tests the others") {
         return;
     }
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let mut faults = Vec::new();
     let mut count = 0;
     for formula in formulas::all() {
@@ -46,7 +46,7 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
 
 #[test]
 fn each_module_has_hard_cases() {
-    for module in lapidary_cook::cookbook::modules() {
+    for module in lapidary_cookbook::modules() {
         let count: usize = formulas::all().iter().filter(|f| f.module == module.name).map(|f| f.hard_cases.len()).sum();
         assert!(count > 0, "{} has none", module.name);
     }
@@ -56,7 +56,7 @@ fn each_module_has_hard_cases() {
 /// does.
 #[test]
 fn beside_each_hard_case_the_stable_form_follows_the_mathematics() {
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let mut faults = Vec::new();
     for formula in formulas::all() {
         let tolerance = check::tolerance(gpu, formula);

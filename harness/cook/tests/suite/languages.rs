@@ -6,11 +6,12 @@
 //! as in `.ci/run`, it fails.
 
 use lapidary_assay::dispatch::{self, KernelModule};
-use lapidary_cook::cookbook::{Module, modules};
-use lapidary_cook::{dist, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook::{Module, modules};
 use lapidary_translate::declarations::{declarations, of_functions, words};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
 use lapidary_wgsl::RECIPES;
+use lapidary_xtask::dist;
 use naga::ShaderStage;
 use rayon::prelude::*;
 use std::io::Write as _;

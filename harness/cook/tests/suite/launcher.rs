@@ -1,7 +1,7 @@
 //! The launcher `./cook`, with stand-ins for the toolchain and the binary: the tests cover its use
 //! of them.
 
-use crate::program::folder;
+use lapidary_testing::program::folder;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -5,7 +5,8 @@ use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::outside::{Promise, accurate, any_bits, finite, holds, like};
 use lapidary_assay::property::promises::broken;
 use lapidary_cook::check::{self, Source};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
 
 #[test]
 fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
@@ -45,7 +46,7 @@ fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
 #[test]
 fn a_promise_that_does_not_hold_is_noticed() {
     const FUNCTION: &str = "cdrf_lambert";
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let formula = formulas::of_function(FUNCTION).expect("a formula");
     let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("compiles");
     let tolerance = check::tolerance(gpu, formula);

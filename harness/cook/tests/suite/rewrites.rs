@@ -4,7 +4,8 @@
 
 use lapidary_assay::property::Settings;
 use lapidary_cook::check::{self, Source};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
 
 /// Function, its expression, and a naive replacement.
 const REWRITES: &[(&str, &str, &str)] = &[
@@ -46,15 +47,15 @@ fn rewritten(function: &str, before: &str, after: &str) -> String {
 
 #[test]
 fn a_copy_with_a_naive_rewrite_fails_its_check() {
-    if !crate::on_lavapipe("the bounds of other devices forgive more") {
+    if !lapidary_testing::on_lavapipe("the bounds of other devices forgive more") {
         return;
     }
-    let gpu = crate::gpu();
+    let gpu = lapidary_testing::gpu();
     let mut passed = Vec::new();
     for (function, before, after) in REWRITES {
         let formula = formulas::of_function(function).expect("a formula");
         let text = rewritten(function, before, after);
-        let settings = Settings { cases: 4_096, seed: crate::seed() };
+        let settings = Settings { cases: 4_096, seed: lapidary_testing::seed() };
         let row = check::run(gpu, formula, Source::Copy("mine.wgsl", &text), settings).expect("the check runs");
         println!("{function}: {after}: {} failed, {:?}", row.failed, row.broken_hard_cases);
         // A failing random input is not enough: the hard case made for the rewrite must fail.

@@ -9,7 +9,8 @@ use lapidary_assay::interpreter::{Nearest, Program};
 use lapidary_assay::property::Settings;
 use lapidary_assay::property::seams::{self, Fault, Seam};
 use lapidary_cook::check::{self, Source};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
@@ -38,7 +39,7 @@ fn seams(program: &Program, formula: &Formula) -> Vec<Seam> {
 /// The interpreter is a device: it is held to the bounds of the reference device.
 #[test]
 fn the_interpreter_computes_what_the_shaders_do() {
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let mut faults = Vec::new();
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
@@ -64,10 +65,10 @@ fn the_interpreter_computes_what_the_shaders_do() {
 /// of exceptions says why not. An outdated line of the list is a fault too.
 #[test]
 fn every_branch_is_straddled_and_continuous_or_says_why_not() {
-    if !crate::on_lavapipe("exceptions are listed for it") {
+    if !lapidary_testing::on_lavapipe("exceptions are listed for it") {
         return;
     }
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let (mut used, mut faults) = (BTreeSet::new(), BTreeMap::new());
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
@@ -105,7 +106,7 @@ fn every_branch_is_straddled_and_continuous_or_says_why_not() {
 
 /// Returns the faults that seams find in `function` of a source with `from` replaced by `to`.
 fn planted(function: &str, from: &str, to: &str) -> Vec<Fault> {
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     let formula = formulas::of_function(function).expect("a formula");
     let source = cookbook::module(formula.module).expect("its module").whole;
     assert_eq!(source.matches(from).count(), 1, "`{from}`");

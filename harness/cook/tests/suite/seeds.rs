@@ -1,11 +1,12 @@
 //! A failure can be reproduced with the printed command, and work can be divided into shards.
 
-use crate::program::{cook, succeeds};
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Settings};
 use lapidary_assay::runner::Runner;
 use lapidary_cook::check::{self, Source};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
+use lapidary_testing::program::{cook, succeeds};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,8 +22,9 @@ fn a_failure_runs_again_with_the_command_that_it_prints() {
     let changed = source.replacen("2.0f * dot", "1.9f * dot", 1);
     std::fs::write(folder.path().join("mine.wgsl"), &changed).expect("a file");
     let formula = formulas::of_function("refraction_reflect").expect("a formula");
-    let settings = Settings { cases: 500, seed: crate::seed() };
-    let row = check::run(crate::gpu(), formula, Source::Copy("mine.wgsl", &changed), settings).expect("the check runs");
+    let settings = Settings { cases: 500, seed: lapidary_testing::seed() };
+    let row = check::run(lapidary_testing::gpu(), formula, Source::Copy("mine.wgsl", &changed), settings)
+        .expect("the check runs");
     assert!(!row.passed());
     let mut words = row.reproduce.split_whitespace();
     assert_eq!(words.next(), Some("./cook"));
@@ -59,8 +61,9 @@ fn inputs_that_were_once_wrong_are_right() {
     let mut wrong = Vec::new();
     let mut inputs = 0;
     for formula in formulas::all() {
-        let mut kernel = check::kernel(crate::gpu(), formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
-        let tolerance = check::tolerance(crate::gpu(), formula);
+        let mut kernel =
+            check::kernel(lapidary_testing::gpu(), formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+        let tolerance = check::tolerance(lapidary_testing::gpu(), formula);
         let rows = once_wrong.load(formula.function, kernel.argument_words()).expect("a file of inputs");
         inputs += rows.len();
         let mut check = Check { formula, runner: &mut kernel, tolerance: &tolerance };

@@ -23,7 +23,7 @@ fn described(row: &Row) -> String {
 
 #[test]
 fn every_function_holds_on_every_device_that_wgsl_allows() {
-    let settings = Settings { cases: DEFAULT_CASES, seed: super::seed() };
+    let settings = Settings { cases: DEFAULT_CASES, seed: lapidary_testing::seed() };
     let mut faults = Vec::new();
     for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
         let row = examined(formula.function, Source::Cookbook, settings);
@@ -47,7 +47,7 @@ fn what_reassociation_breaks_is_named() {
         let settings = if named {
             Settings { cases: 4 * DEFAULT_CASES, ..Settings::default() }
         } else {
-            Settings { cases: DEFAULT_CASES / 4, seed: super::seed() }
+            Settings { cases: DEFAULT_CASES / 4, seed: lapidary_testing::seed() }
         };
         let on = On::Slack(Reassociation::Reordered);
         let row = check::run(on, formula, Source::Cookbook, settings).expect("the interpreter runs it");
@@ -87,10 +87,10 @@ const FORGIVEN: [Forgiven; 4] = [
 
 #[test]
 fn what_lavapipe_forgives_is_found() {
-    let gpu = super::gpu();
+    let gpu = lapidary_testing::gpu();
     for Forgiven { function, from, to } in FORGIVEN {
         let formula = formulas::of_function(function).expect("a formula");
-        let module = lapidary_cook::cookbook::module(formula.module).expect("its module");
+        let module = lapidary_cookbook::module(formula.module).expect("its module");
         assert_eq!(module.source.matches(from).count(), 1, "{function}: {from}");
         let changed = module.source.replace(from, to);
         let copy = Source::Copy("mine.wgsl", &changed);

@@ -1,11 +1,12 @@
 //! `cook check --wgsl` on other people's files: it finds and reports their contents, and gives an
 //! answer for any file.
 
-use crate::program::{Answer, cook, cook_in, folder, succeeds};
 use lapidary_assay::dispatch;
 use lapidary_assay::literal::{Language, call};
 use lapidary_assay::property::Settings;
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
+use lapidary_testing::program::{Answer, cook, cook_in, folder, succeeds};
 use serde_json::Value;
 use std::path::Path;
 
@@ -82,7 +83,7 @@ fn with_turns(turns: &str) -> String {
 
 #[test]
 fn a_loop_without_an_end_fails_for_that_reason() {
-    if !crate::on_lavapipe("the limit is its own") {
+    if !lapidary_testing::on_lavapipe("the limit is its own") {
         return;
     }
     for body in [
@@ -109,7 +110,7 @@ fn a_loop_without_an_end_fails_for_that_reason() {
 
 #[test]
 fn a_right_loop_is_judged_up_to_the_limit_and_named_beyond() {
-    if !crate::on_lavapipe("the limit is its own") {
+    if !lapidary_testing::on_lavapipe("the limit is its own") {
         return;
     }
     let within = check(&with_turns("60000u"), &["--cases", "200"]);
@@ -291,7 +292,7 @@ fn failing_inputs_go_where_they_are_asked_to_and_never_into_a_users_check() {
 
 #[test]
 fn a_failure_is_shown_as_literals_with_what_is_allowed() {
-    if !crate::on_lavapipe("the answer names it") {
+    if !lapidary_testing::on_lavapipe("the answer names it") {
         return;
     }
     let answer = check(&reflection(WRONG), &[]);
@@ -371,7 +372,7 @@ fn settled(text: &str) -> Vec<String> {
 /// The page's example is the output of the command. `LAPIDARY_REFRESH_PAGES=1` rewrites it.
 #[test]
 fn the_page_shows_what_the_command_prints() {
-    if !crate::on_lavapipe("the page shows it") {
+    if !lapidary_testing::on_lavapipe("the page shows it") {
         return;
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/check.md");

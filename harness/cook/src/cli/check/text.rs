@@ -5,7 +5,6 @@ use anstyle::AnsiColor;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::slack::Reassociation;
 use lapidary_cook::check::{On, Row, difference};
-use lapidary_cook::cookbook::release::Standing;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -73,7 +72,7 @@ pub(super) fn about(on: On<'_>) -> String {
 /// Formats the whole report: notes, the table, each failure, the total.
 pub(super) fn report(checked: &Checked, style: Style) -> String {
     let mut text = String::new();
-    for line in notes(&checked.notes, &checked.releases) {
+    for line in notes(&checked.notes) {
         let _ = writeln!(text, "{line}");
     }
     let _ = write!(text, "{} ", checked.about);
@@ -189,12 +188,8 @@ fn allowances(rows: &[Row], text: &mut String) {
 }
 
 /// Formats each note in one line.
-pub(super) fn notes(notes: &[String], releases: &[Standing]) -> Vec<String> {
-    let standing = releases.iter().flat_map(|standing| {
-        let text = standing.describe();
-        text.lines().map(|line| format!("note: {line}")).collect::<Vec<_>>()
-    });
-    notes.iter().map(|note| format!("note: {note}")).chain(standing).collect()
+pub(super) fn notes(notes: &[String]) -> Vec<String> {
+    notes.iter().map(|note| format!("note: {note}")).collect()
 }
 
 /// Describes what is wrong with a function or missing in its test; writes nothing if all is well.

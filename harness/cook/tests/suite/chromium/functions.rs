@@ -9,7 +9,8 @@ use lapidary_assay::slack::Reassociation;
 use lapidary_browser::Browser;
 use lapidary_cook::check::in_browser::InBrowser;
 use lapidary_cook::check::{self, On, Row, Source};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
 
 /// Random inputs per function, besides the hard cases: a brief look at each. `.ci/full` runs
 /// `./cook check --browser` with 65,536 inputs, promises and branches.
@@ -20,7 +21,7 @@ fn every_function_holds_in_chromium() {
     let names = formulas::all().iter().filter(|formula| formula.benign.is_none());
     let count = names.clone().count();
     let Some(browser) = found(browser(), &format!("{count} functions")) else { return };
-    let settings = Settings { cases: CASES, seed: crate::seed() };
+    let settings = Settings { cases: CASES, seed: lapidary_testing::seed() };
     let mut faults = Vec::new();
     for formula in names {
         let module = cookbook::module(formula.module).expect("its module");
@@ -45,10 +46,10 @@ fn every_function_holds_in_chromium() {
 fn another_function_is_told_from_the_cookbooks() {
     let Some(browser) = found(browser(), "a changed function") else { return };
     let formula = formulas::of_function("fresnel_schlick").expect("a formula");
-    let module = lapidary_cook::cookbook::module("fresnel").expect("a module");
+    let module = lapidary_cookbook::module("fresnel").expect("a module");
     let settings = Settings { cases: CASES, ..Settings::default() };
     let run = |browser: &Browser, source: Source<'_>| -> Row {
-        check::run(On::Browser(browser, crate::gpu()), formula, source, settings).expect("runs")
+        check::run(On::Browser(browser, lapidary_testing::gpu()), formula, source, settings).expect("runs")
     };
     assert!(run(&browser, Source::Cookbook).passed());
     let changed = module.source.replacen("1.0f - ", "1.001f - ", usize::MAX);

@@ -11,7 +11,7 @@ mod webgl;
 use crate::specialise::{specialised_program, specialised_texts};
 use lapidary_assay::dispatch;
 use lapidary_browser::{Adapter, Browser, Message};
-use lapidary_cook::cookbook::modules;
+use lapidary_cookbook::modules;
 use lapidary_wgsl::{RECIPES, compose};
 use std::io::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};

@@ -10,7 +10,8 @@ use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::slack::Reassociation;
 use lapidary_browser::{Browser, Transform};
 use lapidary_cook::check::{self, On};
-use lapidary_cook::{cookbook, formulas};
+use lapidary_cook::formulas;
+use lapidary_cookbook as cookbook;
 use lapidary_translate::{Language, library};
 
 /// Random inputs per function, besides the hard cases.
@@ -193,7 +194,7 @@ fn text(module: &str) -> String {
 fn every_function_in_glsl_es_computes_in_webgl_what_its_mirror_does() {
     let stable = formulas::all().iter().filter(|formula| formula.benign.is_none());
     let Some(browser) = found(browser(), &format!("{} functions in GLSL ES", stable.clone().count())) else { return };
-    let settings = Settings { cases: CASES, seed: crate::seed() };
+    let settings = Settings { cases: CASES, seed: lapidary_testing::seed() };
     let mut faults = Vec::new();
     for formula in stable {
         match failed(&browser, formula, &text(formula.module), settings) {

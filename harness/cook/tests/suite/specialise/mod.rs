@@ -5,11 +5,11 @@ mod recipes;
 
 pub(crate) use recipes::specialised_texts;
 
-use crate::gpu;
 use lapidary_assay::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::runner::Runner;
 use lapidary_specialise::specialise;
+use lapidary_testing::gpu;
 use naga::back;
 use program::{random_constants, random_program};
 
@@ -23,7 +23,7 @@ const ROWS: usize = 256;
 
 /// Returns the source and kernel of a random program, with values for its overrides.
 fn kernel(row: u64) -> (String, KernelModule, Vec<(&'static str, f64)>) {
-    let mut draws = Draws::of_row(SEED ^ crate::seed(), row);
+    let mut draws = Draws::of_row(SEED ^ lapidary_testing::seed(), row);
     let source = random_program(&mut draws);
     let constants = random_constants(&mut draws);
     let kernel = KernelModule::reflect(&source, "program", "subject").unwrap_or_else(|e| panic!("{e}\n{source}"));
@@ -79,7 +79,7 @@ fn a_specialised_program_gives_the_same_bits() {
     let (mut varied, mut sensitive, mut others) = (0, 0, 0);
     for row in 0..RUN {
         let (source, kernel, constants) = kernel(row);
-        let arguments = arguments(&mut Draws::of_row((SEED + 1) ^ crate::seed(), row));
+        let arguments = arguments(&mut Draws::of_row((SEED + 1) ^ lapidary_testing::seed(), row));
         let whole = outcomes(kernel.clone(), &constants, &arguments);
         let special = outcomes(specialised(&kernel, &constants), &[], &arguments);
         if let Some(word) = (0..whole.len()).find(|word| !agree(*word, whole[*word], special[*word])) {

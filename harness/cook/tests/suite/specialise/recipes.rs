@@ -93,8 +93,9 @@ fn a_recipes_function_gives_the_same_bits_specialised() {
                 continue;
             }
             let kernel = KernelModule::reflect(&source, recipe.name, &name).unwrap_or_else(|error| panic!("{error}"));
-            let words = dispatch::Kernel::new(crate::gpu(), kernel.clone()).expect("compiles").argument_words();
-            let mut draws = Draws::of_row(SEED ^ crate::seed(), run.len() as u64);
+            let words =
+                dispatch::Kernel::new(lapidary_testing::gpu(), kernel.clone()).expect("compiles").argument_words();
+            let mut draws = Draws::of_row(SEED ^ lapidary_testing::seed(), run.len() as u64);
             // Rows alternate between floats and single bits: any other pattern sets every flag.
             let mut word = |place: usize| match place / words % 2 {
                 0 => draws.between(-2.0, 2.0).to_bits(),

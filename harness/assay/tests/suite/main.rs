@@ -1,0 +1,3 @@
+//! Tests of the library on a device.
+
+mod dispatch;

@@ -1,0 +1,21 @@
+//! Output of commands on stdout. A failed write is an error, unless the reader has closed the pipe.
+
+use super::Failure;
+use std::io::Write as _;
+
+/// Writes a line.
+pub fn line(text: &str) -> Result<(), Failure> {
+    bytes(text.as_bytes())?;
+    bytes(b"\n")
+}
+
+/// Writes bytes as they are.
+pub fn bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Ok(()) => Ok(()),
+        // `cook list | head` is not an error.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(Failure(format!("stdout: cannot be written: {error}"))),
+    }
+}

@@ -1,0 +1,180 @@
+//! The pages of the site.
+
+mod guide;
+mod module;
+mod pictures;
+mod recipe;
+mod start;
+mod technique;
+
+use super::Parts;
+use super::guides::{ENGINES, GUIDES};
+use super::search::Entry;
+use super::techniques::{TECHNIQUES, Technique};
+use super::templates::{self, Markup};
+use lapidary_cookbook::{self as cookbook, header::LICENCE};
+use serde::Serialize;
+
+/// A brilliant cut in side view, as line art: the site's mark.
+pub const MARK: &str = "M5 11 10 5H22L27 11 16 27ZM5 11H27M10 5 12 11 16 27 20 11 22 5M12 11 16 5 20 11";
+
+/// Styles and scripts of every page.
+const STYLES: [&str; 4] = ["style.css", "math.css", "syntax.css", "compare.css"];
+const SCRIPTS: [&str; 2] = ["site.js", "compare.js"];
+
+/// A page of the site.
+#[derive(Clone, Debug, Serialize)]
+pub struct Page {
+    /// Its path from the site's root, such as `modules/srgb.html`.
+    pub path: String,
+    /// Its title.
+    pub title: String,
+    /// What it is about, in a sentence.
+    pub description: String,
+    /// What kind of page it is: `start`, `technique`, `module`, `recipe`, `guide`, `live` or `pictures`.
+    pub kind: &'static str,
+    /// Its contents.
+    pub body: Markup,
+    /// Stylesheets in `assets/`.
+    pub styles: Vec<&'static str>,
+    /// Scripts in `assets/`.
+    pub scripts: Vec<&'static str>,
+    /// What of it can be searched for.
+    #[serde(skip)]
+    pub entries: Vec<Entry>,
+}
+
+impl Page {
+    /// Returns a page with the styles and scripts of all.
+    pub fn new(kind: &'static str, path: String, title: &str, description: &str, body: Markup) -> Self {
+        let (title, description) = (title.to_owned(), description.to_owned());
+        let (styles, scripts) = (STYLES.to_vec(), SCRIPTS.to_vec());
+        Self { path, title, description, kind, body, styles, scripts, entries: Vec::new() }
+    }
+
+    /// Adds a style and a script.
+    pub fn with(mut self, styles: &[&'static str], scripts: &[&'static str]) -> Self {
+        self.styles.extend(styles);
+        self.scripts.extend(scripts);
+        self
+    }
+}
+
+/// Returns the path of a page from the site's root.
+pub fn address(folder: &str, name: &str) -> String {
+    [folder, "/", name, ".html"].concat()
+}
+
+/// Returns the techniques that something belongs to: their pages, from a page in another folder, and their titles.
+fn techniques_with(has: impl Fn(&Technique) -> bool) -> Vec<(String, &'static str)> {
+    let of = TECHNIQUES.iter().filter(|of| has(of));
+    of.map(|of| (["../", &address("techniques", of.name)].concat(), of.title)).collect()
+}
+
+/// Returns all pages, in the order in which one reads on.
+pub fn all(parts: &Parts<'_>) -> Vec<Page> {
+    let mut pages = vec![start::page(parts)];
+    pages.extend(TECHNIQUES.iter().map(|of| technique::page(parts, of)));
+    pages.extend(parts.live.iter().map(|live| live_page(parts, live)));
+    pages.extend(GUIDES.iter().chain(&ENGINES).map(|of| guide::page(parts, of)));
+    pages.push(pictures::page(parts));
+    pages.extend(cookbook::modules().iter().map(|of| module::page(parts, of)));
+    pages.extend(lapidary_wgsl::RECIPES.iter().map(|of| recipe::page(parts, of)));
+    pages
+}
+
+#[derive(Serialize)]
+struct Live<'a> {
+    live: &'a super::LivePage,
+    ladder: Option<&'a Markup>,
+}
+
+fn live_page(parts: &Parts<'_>, live: &super::LivePage) -> Page {
+    let path = address("live", live.scene);
+    let body = templates::render("live_page.html", Live { live, ladder: parts.ladders.get(live.ladder) });
+    let description = "The frames that the renderer makes, run by your browser on your GPU.";
+    let mut page = Page::new("live", path, live.title, description, body)
+        .with(&["ladder.css", "live.css"], &["piz.js", "environment.js"]);
+    page.entries = vec![Entry::page(live.title, &page.path, description)];
+    page
+}
+
+/// A link in the contents.
+#[derive(Serialize)]
+struct Link<'a> {
+    path: String,
+    title: &'a str,
+    code: bool,
+}
+
+/// A part of the contents.
+#[derive(Serialize)]
+struct Group<'a> {
+    title: &'a str,
+    entries: Vec<Link<'a>>,
+    folded: bool,
+    current: bool,
+}
+
+fn groups<'a>(parts: &'a Parts<'_>, current: &str) -> Vec<Group<'a>> {
+    let link = |folder: &str, name: &str, title: &'a str, code: bool| Link { path: address(folder, name), title, code };
+    let techniques = TECHNIQUES.iter().map(|of| link("techniques", of.name, of.title, false));
+    let pictures = Link { path: "pictures.html".to_owned(), title: "All pictures", code: false };
+    let list: [(&str, Vec<Link<'_>>, bool); 6] = [
+        ("Techniques", techniques.chain([pictures]).collect(), false),
+        ("Live", parts.live.iter().map(|of| link("live", of.scene, of.title, false)).collect(), false),
+        ("Guides", GUIDES.iter().map(|of| link("guides", of.name, of.title, false)).collect(), false),
+        ("Engines and languages", ENGINES.iter().map(|of| link("guides", of.name, of.title, false)).collect(), true),
+        ("Modules", cookbook::modules().iter().map(|of| link("modules", of.name, of.name, true)).collect(), true),
+        ("Recipes", lapidary_wgsl::RECIPES.iter().map(|of| link("recipes", of.name, of.name, true)).collect(), true),
+    ];
+    let group = |(title, entries, folded): (&'a str, Vec<Link<'a>>, bool)| Group {
+        title,
+        current: entries.iter().any(|entry| entry.path == current),
+        entries,
+        folded,
+    };
+    list.into_iter().filter(|(_, entries, _)| !entries.is_empty()).map(group).collect()
+}
+
+/// A page before or after another.
+#[derive(Serialize)]
+struct Neighbour<'a> {
+    path: &'a str,
+    title: &'a str,
+}
+
+/// What every page's frame shows.
+#[derive(Serialize)]
+struct Values<'a> {
+    root: &'a str,
+    mark: &'a str,
+    page: &'a Page,
+    groups: Vec<Group<'a>>,
+    previous: Option<Neighbour<'a>>,
+    next: Option<Neighbour<'a>>,
+    adapter: &'a str,
+    licence: &'a str,
+}
+
+/// Returns the whole HTML of the page at that place.
+pub fn html(parts: &Parts<'_>, pages: &[Page], at: usize) -> String {
+    let page = &pages[at];
+    let neighbour = |at: usize| pages.get(at).map(|page| Neighbour { path: &page.path, title: &page.title });
+    let values = Values {
+        root: root(&page.path),
+        mark: MARK,
+        page,
+        groups: groups(parts, &page.path),
+        previous: at.checked_sub(1).and_then(neighbour),
+        next: neighbour(at + 1),
+        adapter: parts.adapter,
+        licence: LICENCE,
+    };
+    templates::render("base.html", values).0
+}
+
+/// Returns the way from a page to the site's root.
+pub fn root(path: &str) -> &'static str {
+    if path.contains('/') { "../" } else { "" }
+}

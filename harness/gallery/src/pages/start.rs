@@ -1,0 +1,61 @@
+//! The page that one sees first.
+
+use super::super::choices::{self, Choice, Heading};
+use super::super::ladder::Kind;
+use super::super::techniques::{TECHNIQUES, Technique};
+use super::super::{Parts, pictures::Shown, take::Take, templates, text};
+use super::Page;
+use lapidary_cookbook as cookbook;
+use serde::Serialize;
+
+/// A technique, in short.
+#[derive(Serialize)]
+struct Card<'a> {
+    name: &'a str,
+    title: &'a str,
+    summary: &'a str,
+    choice: Option<&'a Choice>,
+    heading: Option<Heading>,
+    live: Option<&'a str>,
+    picture: Option<&'a Shown>,
+}
+
+/// Returns the page.
+pub fn page(parts: &Parts<'_>) -> Page {
+    let card = |of: &'static Technique| Card {
+        name: of.name,
+        title: of.title,
+        summary: of.summary,
+        choice: default(parts, of),
+        heading: of.ladders.first().and_then(|name| Kind::named(name)).map(choices::heading),
+        live: parts.live_scene(of),
+        picture: parts.picture(of.hero),
+    };
+    #[derive(Serialize)]
+    struct Values<'a> {
+        hero: Option<&'a Shown>,
+        cards: Vec<Card<'a>>,
+        modules: usize,
+        functions: usize,
+        recipes: usize,
+    }
+    let values = Values {
+        hero: parts.picture("vitrine"),
+        cards: TECHNIQUES.iter().map(card).collect(),
+        modules: cookbook::modules().len(),
+        functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),
+        recipes: lapidary_wgsl::RECIPES.len(),
+    };
+    let body = templates::render("start.html", values);
+    let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";
+    let mut page =
+        Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
+    page.entries = vec![super::Entry::page("Start", &page.path, &text::plain(description))];
+    page
+}
+
+/// Returns the rung that a technique has without a choice, on its first ladder.
+fn default<'a>(parts: &'a Parts<'_>, of: &Technique) -> Option<&'a Choice> {
+    let of_ladder = |take: &&Take| of.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
+    parts.takes.iter().find(of_ladder).map(|take| &take.choice)
+}

@@ -1,0 +1,55 @@
+//! The white furnace. Surrounded by radiance 1, a clear stone shows radiance 1 everywhere: light
+//! that its surface does not reflect comes from inside, and the light still inside at the end of a
+//! ray is taken from the environment as well.
+
+use lapidary_plan::Rung;
+use lapidary_render as render;
+use lapidary_render::Settings;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene};
+
+/// Returns a bound on the rounding of sums of products with weights that add up to 1: one product
+/// for every hit, over the 16 samples of a pixel.
+fn bound(rung: Rung) -> f32 {
+    (16 + 8 * rung.hits()) as f32 * f32::EPSILON
+}
+
+fn ones() -> Environment {
+    Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] })
+}
+
+#[test]
+fn a_clear_stone_disappears() {
+    for (name, rungs) in [
+        ("brilliant", &["proxy-0", "proxy-1", "proxy-1+paper", "proxy-8+tracker", "convex-8+tracker", "bvh-4"][..]),
+        ("octahedron", &["proxy-1", "convex-4+3", "triangles-2+tracker"]),
+        ("prism", &["proxy-2+31", "convex-2+31"]),
+        ("bunny_stone", &["proxy-1", "bvh-2+tracker"]),
+    ] {
+        let scene = Scene::named(name).expect("built in");
+        for rung in rungs {
+            let rung: Rung = rung.parse().expect(rung);
+            let settings = Settings { environment: ones(), rung, ..Settings::of_size(128, 128) };
+            let picture = render::render(lapidary_testing::gpu(), &scene, &settings).expect("rendered");
+            let covered: Vec<&[f32; 4]> = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).collect();
+            assert!(covered.len() > 1000, "{name}: {} pixels", covered.len());
+            for [r, g, b, _] in covered {
+                assert!(
+                    [r, g, b].iter().all(|value| (*value - 1.0).abs() <= bound(rung)),
+                    "{name} {rung}: {r} {g} {b}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_surface_alone_reflects_less() {
+    let scene = Scene::named("brilliant").expect("built in");
+    let settings = Settings { environment: ones(), rung: Rung::Surface, ..Settings::of_size(128, 128) };
+    let picture = render::render(lapidary_testing::gpu(), &scene, &settings).expect("rendered");
+    let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0);
+    // Diamond reflects 17.2 % at normal incidence and never less.
+    assert!(covered.clone().count() > 1000);
+    assert!(covered.into_iter().all(|[r, ..]| (0.1719..1.0).contains(r)));
+}

@@ -1,0 +1,8 @@
+//! The project's own workshop: the suite, new techniques, committed pictures, generated pages, lints.
+
+pub mod dist;
+pub mod host;
+pub mod lint;
+pub mod new;
+pub mod snapshots;
+pub mod test;

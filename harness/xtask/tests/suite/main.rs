@@ -1,0 +1,8 @@
+//! Tests of the repository: its structure, contract, pages and examples.
+
+mod contract;
+mod engines;
+mod host;
+mod structure;
+mod technique;
+mod text;
