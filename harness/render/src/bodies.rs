@@ -1,6 +1,6 @@
 //! The bodies of a scene by their bounds and by what they send, as the part `bodies` reads them.
 
-use crate::record::Record;
+use crate::frame::record::Record;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_bounds_trace::{self as bounds_trace, BOUNDS_TRACE_NONE};
 use lapidary_environment as environment;

@@ -4,8 +4,8 @@
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
+use crate::frame::record::Record;
 use crate::frame::{Bound, Builder, Depth, PipelineId, PipelineSource, Target, Texture};
-use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
 
 /// Format of the colour targets: the one that engines use for emission, and precise enough for a

@@ -1,8 +1,8 @@
 //! The recipe `optical_path_density`: the density of a body at each voxel.
 
 use super::RenderError;
+use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, Contents, Dispatch, Frame, Texture, Workgroups};
-use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_scene::{Density, DensityGrid};
 use lapidary_veins::VeinsPattern;

@@ -17,8 +17,8 @@ use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant}
 use super::reflective_shadow_map::ReflectiveShadowMaps;
 use super::stage::Stage;
 use super::variant::{Drawn, Part};
+use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, Executor, Frame, PipelineId, PipelineSource};
-use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use cells::Cells;
 use glam::Vec3;

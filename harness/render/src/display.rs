@@ -2,8 +2,8 @@
 
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
+use crate::frame::record::Record;
 use crate::frame::{BindGroupId, Bound, Builder, Executor, PipelineId, PipelineSource, Read, Readback, Texture};
-use crate::record::Record;
 use glam::{UVec2, Vec2};
 use lapidary_gpu::Gpu;
 use std::ops::Range;

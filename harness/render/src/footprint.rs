@@ -3,8 +3,8 @@
 
 use super::pass::SAMPLE_FORMAT;
 use super::{RenderError, Settings};
+use crate::frame::record::Record;
 use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
-use crate::record::Record;
 use glam::UVec2;
 use lapidary_plan::Effect;
 

@@ -5,8 +5,8 @@ use super::diffusion::Diffusions;
 use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
 use super::stage::Stage;
+use crate::frame::record::Record;
 use crate::frame::{BindGroupId, Bound, Builder, Depth, Draw, Pass, PipelineId, RenderPass, Target};
-use crate::record::Record;
 use glam::{Mat4, Vec3};
 use std::ops::Range;
 

@@ -5,10 +5,10 @@ use super::RenderError;
 use super::light_views::LightView;
 use super::mesh_buffers::{MeshBuffers, ShapeBuffers};
 use super::pass::DEPTH_FORMAT;
+use crate::frame::record::Record;
 use crate::frame::{
     BindGroupId, Bound, Buffer, Builder, Frame, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture,
 };
-use crate::record::Record;
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
 const RECIPE: &str = "draw_light_map";

@@ -1,7 +1,7 @@
 //! The angular law of light that scattering matter sends back, as the part `scattering_law` of the
 //! recipes takes it: computed once per material.
 
-use crate::record::Record;
+use crate::frame::record::Record;
 use glam::Vec3;
 use lapidary_fresnel::dielectric;
 use lapidary_half_space as half_space;

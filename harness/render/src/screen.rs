@@ -2,8 +2,8 @@
 
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use super::{RenderError, Settings};
+use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, Depth, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
-use crate::record::Record;
 use glam::{Mat4, UVec2};
 use lapidary_scene::{Bounds, Scene};
 

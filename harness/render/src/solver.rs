@@ -1,8 +1,8 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use crate::frame::{Bound, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
-use crate::record::Record;
-use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Gpu, GpuError};
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};

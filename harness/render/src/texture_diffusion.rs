@@ -2,8 +2,8 @@
 //! texture that shading looks up.
 
 use super::RenderError;
+use crate::frame::record::Record;
 use crate::frame::{BindGroupId, Bound, Builder, Draw, PipelineId, PipelineSource, Sampler, Texture};
-use crate::record::Record;
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion as mirror;
 

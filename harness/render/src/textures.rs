@@ -3,8 +3,8 @@
 mod levels;
 mod normals;
 
+use crate::frame::record::Record;
 use crate::frame::{Bound, Builder, PipelineId};
-use crate::record::Record;
 use glam::Vec3;
 use lapidary_scene::{Encoding, Material, Mesh, Texture, TextureTransform, Wrap};
 use normals::{Normals, texel_length};

@@ -1,6 +1,6 @@
 //! A cube of cubic voxels around a body, shared by the passes over voxels.
 
-use crate::record::Record;
+use crate::frame::record::Record;
 use glam::{UVec3, Vec3};
 use lapidary_scene::Bounds;
 use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};

@@ -1,8 +1,8 @@
 //! The recipe `voxelize`: voxelizes a mesh on the device, anew in every frame.
 
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use crate::frame::{BindGroupId, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
-use crate::record::Record;
-use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Gpu, GpuError};
 use lapidary_plan::Note;

@@ -1,9 +1,9 @@
 //! The recipe `cdrf_table`: its run, the rounding to the formats that a texture may have, and the
 //! lookup as a sampler does it.
 
-use crate::compute::{self, Binding, RecipeRun};
-use crate::record::Record;
-use crate::shader::ShaderError;
+use crate::frame::compute::{self, Binding, RecipeRun};
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
 use lapidary_gpu::Gpu;

@@ -3,9 +3,9 @@
 use super::super::mesh_buffers::ShapeBuffers;
 use super::tiles::{self, Tiles};
 use super::{Effect, Matter};
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Frame, Pass, Workgroups};
-use crate::record::Record;
-use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
 use glam::Vec3;

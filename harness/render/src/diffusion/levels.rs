@@ -2,10 +2,10 @@
 
 use super::cells::Cells;
 use super::tiles::{self, TILE, Tiles};
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Executor, Frame, PipelineId, Workgroups};
-use crate::record::Record;
 use crate::settings::DiffusionOptions;
-use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use glam::Vec3;
 use lapidary_gpu::GpuError;

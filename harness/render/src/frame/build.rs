@@ -1,8 +1,12 @@
 //! Builds a frame: techniques add resources, pipelines and passes as they need them.
 
-use super::*;
-use crate::record::Record;
-use crate::shader::ShaderError;
+use super::handles::{BindGroupId, Bound, Buffer, PipelineId, Sampler, Texture};
+use super::pass::{ComputePass, Dispatch, Draw, Pass, Read, RenderPass, Target, Workgroups};
+use super::pipeline::{BindGroup, Blend, Pipeline, PipelineKind};
+use super::record::Record;
+use super::resource::{Contents, Resource, ResourceKind, texel_bytes};
+use super::shader::{Shader, ShaderError};
+use super::whole::Frame;
 use lapidary_gpu::Gpu;
 use lapidary_scene::{Encoding, Texels};
 use std::collections::HashMap;

@@ -2,9 +2,9 @@
 //! texel of the lights' maps.
 
 use super::super::light_maps::Lit;
+use crate::frame::record::Record;
+use crate::frame::shader::ShaderError;
 use crate::frame::{Buffer, Builder, Dispatch, PipelineId, Workgroups};
-use crate::record::Record;
-use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 
 const RECIPE: &str = "optical_path_seed";

@@ -1,7 +1,9 @@
 //! Runs a recipe's compute entry point once, with its own buffers.
 
-use crate::frame::{Builder, Executor, Workgroups};
-use crate::shader::ShaderError;
+use super::build::Builder;
+use super::execute::Executor;
+use super::pass::Workgroups;
+use super::shader::ShaderError;
 use lapidary_gpu::Gpu;
 use wgpu::BufferUsages as Usage;
 

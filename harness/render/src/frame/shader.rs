@@ -5,7 +5,6 @@ use lapidary_gpu::GpuError;
 use lapidary_specialise::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
 use lapidary_specialise::{SourceError, SpecialiseError, declared, parse, specialise};
 use naga::valid::ModuleInfo;
-use std::borrow::Cow;
 
 /// Why a recipe was not compiled.
 #[derive(Debug, thiserror::Error)]
@@ -87,9 +86,9 @@ impl Shader {
         self.bindings().any(|at| at == (group, binding))
     }
 
-    /// Returns the descriptor that creates the module on a device.
-    pub(crate) fn module_descriptor(&self) -> wgpu::ShaderModuleDescriptor<'static> {
-        wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Naga(Cow::Owned(self.module.clone())) }
+    /// Returns the module.
+    pub(super) fn module(&self) -> &naga::Module {
+        &self.module
     }
 
     /// Returns the module as WGSL, without overrides.
