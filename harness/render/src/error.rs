@@ -1,6 +1,6 @@
 //! Errors of rendering.
 
-use super::MOST_SAMPLES;
+use crate::settings::MOST_SAMPLES;
 use lapidary_gpu::GpuError;
 use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
