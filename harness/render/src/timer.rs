@@ -117,7 +117,7 @@ impl<'gpu> FrameTimer<'gpu> {
     /// # Errors
     /// If the device is lost, or if the other frame has other bodies or grids of another size.
     pub fn continue_from(&self, before: &Self) -> Result<(), RenderError> {
-        let fluences = |of: &Self| of.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
+        let fluences = |timer: &Self| timer.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
         let [ours, others] = [fluences(self), fluences(before)];
         if ours.len() != others.len() {
             let reason =

@@ -77,13 +77,13 @@ impl Shader {
     /// Group and number of each binding that remains.
     pub fn bindings(&self) -> impl Iterator<Item = (u32, u32)> {
         let bindings = self.module.global_variables.iter().filter_map(|(_, global)| global.binding);
-        bindings.map(|at| (at.group, at.binding))
+        bindings.map(|binding| (binding.group, binding.binding))
     }
 
     /// Returns whether this binding remains.
     #[must_use]
     pub fn binds(&self, group: u32, binding: u32) -> bool {
-        self.bindings().any(|at| at == (group, binding))
+        self.bindings().any(|remaining| remaining == (group, binding))
     }
 
     /// Returns the module.

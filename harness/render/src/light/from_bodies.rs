@@ -79,11 +79,11 @@ fn matte(object: &Object, scene: &Scene, around: &[DVec3; harmonics::COUNT]) -> 
     let (mut area, mut arriving) = (0.0, [DVec3::ZERO; harmonics::COUNT]);
     if !scene.lights.is_empty() {
         for [a, b, c] in object.mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())) {
-            let own = 0.5 * (b - a).cross(c - a).length();
-            area += own;
+            let triangle_area = 0.5 * (b - a).cross(c - a).length();
+            area += triangle_area;
             for arrival in scene.lights.iter().map(|light| light.arrival((a + b + c) / 3.0)) {
                 for (sum, value) in arriving.iter_mut().zip(harmonics::basis(arrival.direction)) {
-                    *sum += own * value * arrival.irradiance;
+                    *sum += triangle_area * value * arrival.irradiance;
                 }
             }
         }

@@ -26,7 +26,9 @@ const MARGIN: f32 = 1.0 + 1e-4;
 pub(crate) fn views(lights: &[Light], bounds: Bounds, before: Option<Bounds>) -> Vec<LightView> {
     (0..)
         .zip(lights)
-        .flat_map(|(light, of)| views_of(of, bounds, before).into_iter().map(move |view| LightView { view, light }))
+        .flat_map(|(number, light)| {
+            views_of(light, bounds, before).into_iter().map(move |view| LightView { view, light: number })
+        })
         .collect()
 }
 
@@ -79,14 +81,14 @@ fn lamp(
 /// linear RGB. Distances to a lamp below a hundredth of the bounds' radius count as that far.
 pub(crate) fn largest_irradiance(lights: &[Light], bounds: Bounds) -> Vec3 {
     let least = 0.01 * bounds.radius();
-    let of = |light: &Light| match *light {
+    let brightest = |light: &Light| match *light {
         Light::Directional { irradiance, .. } => irradiance,
         Light::Point { position, intensity } | Light::Spot { position, intensity, .. } => {
             let distance = position.distance(position.clamp(bounds.min, bounds.max)).max(least);
             intensity / (distance * distance)
         }
     };
-    lights.iter().map(of).fold(Vec3::ZERO, Vec3::max)
+    lights.iter().map(brightest).fold(Vec3::ZERO, Vec3::max)
 }
 
 #[cfg(test)]

@@ -86,9 +86,9 @@ fn covered(side: u32) -> Vec<[(usize, f32); 3]> {
     let texel = |place: u32| {
         let [from, to] = [place, place + 1].map(|edge| f64::from(edge) * length);
         std::array::from_fn(|step| {
-            let at = from.floor() + step as f64;
-            let share = (to.min(at + 1.0) - from.max(at)).max(0.0) / length;
-            ((at as usize).min(side as usize - 1), share as f32)
+            let start = from.floor() + step as f64;
+            let share = (to.min(start + 1.0) - from.max(start)).max(0.0) / length;
+            ((start as usize).min(side as usize - 1), share as f32)
         })
     };
     (0..next).map(texel).collect()

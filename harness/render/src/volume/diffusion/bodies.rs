@@ -45,11 +45,11 @@ impl Diffusions {
 
     /// Size in bytes of the maps and of each body's cells, densities, source and levels.
     pub(crate) fn bytes(&self, frame: &Frame) -> u64 {
-        let of = |body: &BodyDiffusion| {
+        let of_body = |body: &BodyDiffusion| {
             let densities = body.densities.as_ref().map_or(0, |densities| densities.bytes(frame));
             body.cells.bytes(frame) + densities + body.source.bytes(frame) + body.levels.bytes(frame)
         };
-        self.maps.bytes(frame) + self.bodies.iter().map(of).sum::<u64>()
+        self.maps.bytes(frame) + self.bodies.iter().map(of_body).sum::<u64>()
     }
 }
 

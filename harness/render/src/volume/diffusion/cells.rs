@@ -39,7 +39,7 @@ pub(super) struct Cells {
     /// Buffers that begin as 0 in each frame.
     cleared: Vec<Buffer>,
     /// Buffers that only this recipe reads.
-    own: Vec<Buffer>,
+    scratch: Vec<Buffer>,
     dispatches: Vec<Dispatch>,
 }
 
@@ -119,8 +119,20 @@ impl Cells {
         let dispatches =
             kernels.into_iter().zip(counts.into_iter().chain([tiles.dispatched()])).map(dispatch).collect();
         let cleared = [filled, surfaces, nodes, faces, reactions].into_iter().chain(entering).collect();
-        let own = [filled, surfaces, large].into_iter().chain(tiles.buffers()).chain(entering).collect();
-        Ok(Self { voxelizer, mesh: *mesh, nodes, faces, reactions, entering, tiles, large, cleared, own, dispatches })
+        let scratch = [filled, surfaces, large].into_iter().chain(tiles.buffers()).chain(entering).collect();
+        Ok(Self {
+            voxelizer,
+            mesh: *mesh,
+            nodes,
+            faces,
+            reactions,
+            entering,
+            tiles,
+            large,
+            cleared,
+            scratch,
+            dispatches,
+        })
     }
 
     /// Encodes the voxels, and which tiles hold matter.
@@ -143,7 +155,7 @@ impl Cells {
     /// Size of the buffers in bytes.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let shared = [self.nodes, self.faces, self.reactions];
-        self.voxelizer.bytes(frame) + frame.bytes_of(shared) + frame.bytes_of(self.own.iter().copied())
+        self.voxelizer.bytes(frame) + frame.bytes_of(shared) + frame.bytes_of(self.scratch.iter().copied())
     }
 }
 

@@ -177,13 +177,13 @@ impl Levels {
 
     /// Size of the buffers in bytes, except those of the finest level's cells.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
-        let of = |(number, level): (usize, &Level)| {
+        let of_level = |(number, level): (usize, &Level)| {
             let of_cells = [level.faces, level.reactions].into_iter().chain(level.tiles.buffers());
             let of_cells = if number == 0 { 0 } else { frame.bytes_of(of_cells) };
             frame.bytes_of([level.fluence, level.right]) + of_cells
         };
         frame.bytes_of([self.packed].into_iter().chain(self.residual_sums()))
-            + self.levels.iter().enumerate().map(of).sum::<u64>()
+            + self.levels.iter().enumerate().map(of_level).sum::<u64>()
     }
 }
 

@@ -51,12 +51,12 @@ impl OpticalPaths {
 
     /// Size in bytes of the maps and of each body's voxels, densities, costs and solver.
     pub(crate) fn bytes(&self, frame: &Frame) -> u64 {
-        let of = |body: &BodyPaths| {
+        let of_body = |body: &BodyPaths| {
             let costs = frame.bytes_of(body.channels.iter().map(|channel| channel.solved.cost));
             let densities = body.densities.as_ref().map_or(0, |densities| densities.bytes(frame));
             body.voxelizer.bytes(frame) + densities + costs + body.solver.bytes(frame)
         };
-        self.maps.bytes(frame) + self.bodies.iter().map(of).sum::<u64>()
+        self.maps.bytes(frame) + self.bodies.iter().map(of_body).sum::<u64>()
     }
 }
 
