@@ -34,7 +34,7 @@ mod volume;
 pub use drawing::scene_frame::frame;
 pub use error::RenderError;
 pub use frame::{compute, shader};
-pub use picture::display::encode;
+pub use picture::displayed::encode;
 pub use picture::{Picture, WalkedPicture, file};
 pub use reference::scatters;
 pub use render::{render, render_means, render_reporting, render_with};

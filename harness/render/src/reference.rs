@@ -1,7 +1,7 @@
 //! A picture by the reference, on the CPU: the rung without a recipe.
 
 use crate::error::RenderError;
-use crate::picture::display::{Display, encode};
+use crate::picture::displayed::{Display, encode};
 use crate::picture::{Picture, Tile, WalkedPicture};
 use crate::settings::Settings;
 use lapidary_gpu::Gpu;

@@ -65,6 +65,11 @@ impl<'gpu> Builder<'gpu> {
         self.gpu
     }
 
+    /// Returns whether the frame is made for lavapipe.
+    pub(crate) fn is_for_lavapipe(&self) -> bool {
+        self.gpu.is_some_and(Gpu::is_lavapipe)
+    }
+
     /// Returns the limits that every device meets; no device is asked for more.
     #[must_use]
     pub fn limits(&self) -> wgpu::Limits {

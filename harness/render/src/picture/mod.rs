@@ -1,6 +1,7 @@
 //! Pictures: their pixels, the tiles in which they are drawn, how samples are displayed, and files.
 
 pub(crate) mod display;
+pub(crate) mod displayed;
 pub mod file;
 pub(crate) mod formats;
 mod rendered;

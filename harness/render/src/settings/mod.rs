@@ -27,7 +27,7 @@ pub struct Settings {
     pub width: u32,
     /// Height in pixels, 1 to [`LARGEST_SIDE`](lapidary_scene::LARGEST_SIDE).
     pub height: u32,
-    /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`](crate::MOST_SAMPLES).
+    /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`].
     pub samples: u32,
     /// The light around the scene.
     pub environment: Environment,

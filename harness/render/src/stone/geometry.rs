@@ -4,7 +4,6 @@ use super::facet_map::Walked;
 use crate::error::RenderError;
 use crate::frame::Builder;
 use crate::frame::record::Record;
-use lapidary_gpu::Gpu;
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
@@ -33,7 +32,7 @@ pub(super) fn check_steps(builder: &Builder<'_>, rung: Rung, steps: u64) -> Resu
         Spectrum::Separate(count) => u64::from(count),
     };
     let steps = rays * (1 + u64::from(rung.hits()) * (1 + steps));
-    if builder.gpu().is_some_and(Gpu::is_lavapipe) && steps > LAVAPIPE_STEPS {
+    if builder.is_for_lavapipe() && steps > LAVAPIPE_STEPS {
         return Err(RenderError::TooManySteps { rung, steps, limit: LAVAPIPE_STEPS });
     }
     Ok(())

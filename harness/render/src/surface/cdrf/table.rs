@@ -1,16 +1,9 @@
-//! The recipe `cdrf_table`: its run, the rounding to the formats that a texture may have, and the
-//! lookup as a sampler does it.
+//! The table in the formats that a texture may have, and its lookup as a sampler does it.
 
-use crate::frame::compute::{self, Binding, RecipeRun};
-use crate::frame::record::Record;
-use crate::frame::shader::ShaderError;
+pub use super::bake::bake;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
-use lapidary_gpu::Gpu;
 use lapidary_scene::solver::Format;
-
-/// Side of the recipe's workgroups.
-const WORKGROUP: u32 = 8;
 
 /// Returns the nearest value that the format holds.
 pub fn round(format: Format, value: f32) -> f32 {
@@ -41,25 +34,6 @@ pub fn texels(format: Format, texels: &[Vec3]) -> Vec<u8> {
         }
         Format::R32Float => texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect(),
     }
-}
-
-/// Bakes a table of `size` on the GPU, row by row.
-///
-/// # Errors
-/// If the device refuses the recipe or the memory.
-pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError> {
-    let bake = Record::new("CdrfTableBake").with("size", size).with("tint", tint).bytes();
-    let bytes = u64::from(size.x) * u64::from(size.y) * 16;
-    let run = RecipeRun {
-        recipe: "cdrf_table",
-        entry: "cdrf_table_bake",
-        constants: &[],
-        bindings: &[&[Binding::Uniform(&bake), Binding::Result(bytes)]],
-        workgroups: [size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1],
-    };
-    let words = compute::run_recipe(gpu, &run)?;
-    let texel = |words: &[u32]| Vec3::from_array([0, 1, 2].map(|channel| f32::from_bits(words[channel])));
-    Ok(words.chunks_exact(4).map(texel).collect())
 }
 
 /// A baked table in a texture's format.
