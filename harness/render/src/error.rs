@@ -1,6 +1,6 @@
 //! Errors of rendering.
 
-use super::MOST_SAMPLES;
+use crate::settings::MOST_SAMPLES;
 use lapidary_gpu::GpuError;
 use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
@@ -75,7 +75,7 @@ pub enum RenderError {
     },
     /// A recipe is not valid.
     #[error(transparent)]
-    Kernel(#[from] crate::shader::ShaderError),
+    Kernel(#[from] crate::frame::shader::ShaderError),
     /// An object other than a clear stone; only clear stones can be drawn with a geometry buffer.
     #[error(
         "object `{object}` is drawn by rung `{rung}`, and only clear stones are drawn by way of a geometry buffer; leave --deferred out"

@@ -1,14 +1,18 @@
 //! A frame to be timed: a rung's recipe, alone or with the display recipe. It can be run repeatedly
 //! and reads nothing back.
 
-use super::diffusion::Diffusions;
-use super::drawing::{apart, scene_pass};
-use super::layers::Layers;
-use super::lighting::Lighting;
-use super::pass::{SAMPLE_FORMAT, ScenePass};
-use super::{RenderError, Settings, Stage, display};
+use crate::drawing::copies::with_copies_apart;
+use crate::drawing::layers::Layers;
+use crate::drawing::scene_pass::{ScenePass, scene_pass};
+use crate::error::RenderError;
 use crate::frame::{Builder, Executor};
-use crate::solver::Status;
+use crate::light::lighting::Lighting;
+use crate::picture::display;
+use crate::picture::formats::SAMPLE_FORMAT;
+use crate::settings::Settings;
+use crate::volume::diffusion::Diffusions;
+use crate::volume::solver::Status;
+use crate::volume::stage::Stage;
 use glam::Vec2;
 use lapidary_gpu::{Gpu, GpuError};
 use lapidary_scene::Scene;
@@ -40,7 +44,7 @@ pub struct FrameTime {
 
 impl<'gpu> FrameTimer<'gpu> {
     /// Texels along each side of the textures of rung `blur`.
-    pub const BLUR_SIDE: u32 = super::blur::SIDE;
+    pub const BLUR_SIDE: u32 = crate::surface::blur::SIDE;
 
     /// Compiles the rung, or another text of its recipe, and uploads the scene. If `displayed`, the
     /// tone curve and the encoding for a screen are included.
@@ -51,7 +55,7 @@ impl<'gpu> FrameTimer<'gpu> {
         source: Option<&str>,
         displayed: bool,
     ) -> Result<Self, RenderError> {
-        let scene = &*apart(scene, settings);
+        let scene = &*with_copies_apart(scene, settings);
         let mut builder = Builder::new(Some(gpu));
         let size = [settings.width, settings.height];
         let lighting = Lighting::new(scene, settings, size);
@@ -64,7 +68,7 @@ impl<'gpu> FrameTimer<'gpu> {
         let view = (matrix, scene.camera.eye);
         let layers = Layers::new(&mut builder, &lighting, settings, color, size)?;
         let start = builder.frame().passes.len();
-        layers.draw(&mut builder, &pass, view, size);
+        layers.draw(&mut builder, &pass.variants, view, size);
         let draw_calls = builder.frame().draw_calls();
         if displayed {
             let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;
@@ -113,16 +117,16 @@ impl<'gpu> FrameTimer<'gpu> {
     /// # Errors
     /// If the device is lost, or if the other frame has other bodies or grids of another size.
     pub fn continue_from(&self, before: &Self) -> Result<(), RenderError> {
-        let fluences = |of: &Self| of.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
-        let [own, others] = [fluences(self), fluences(before)];
-        if own.len() != others.len() {
+        let fluences = |timer: &Self| timer.pass.diffusions().flat_map(Diffusions::fluences).collect::<Vec<_>>();
+        let [ours, others] = [fluences(self), fluences(before)];
+        if ours.len() != others.len() {
             let reason =
-                format!("it has {} bodies through which light diffuses, the other {}", own.len(), others.len());
+                format!("it has {} bodies through which light diffuses, the other {}", ours.len(), others.len());
             return Err(GpuError::Device { what: "continuing a frame".to_owned(), reason }.into());
         }
-        for (own, other) in own.into_iter().zip(others) {
+        for (ours, other) in ours.into_iter().zip(others) {
             let words = before.executor.words(other)?;
-            self.executor.write_buffer(own, bytemuck::cast_slice(&words))?;
+            self.executor.write_buffer(ours, bytemuck::cast_slice(&words))?;
         }
         Ok(())
     }

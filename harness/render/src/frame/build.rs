@@ -1,8 +1,12 @@
 //! Builds a frame: techniques add resources, pipelines and passes as they need them.
 
-use super::*;
-use crate::record::Record;
-use crate::shader::ShaderError;
+use super::handles::{BindGroupId, Bound, Buffer, PipelineId, Sampler, Texture};
+use super::pass::{ComputePass, Dispatch, Draw, Pass, Read, RenderPass, Target, Workgroups};
+use super::pipeline::{BindGroup, Blend, Pipeline, PipelineKind};
+use super::record::Record;
+use super::resource::{Contents, Resource, ResourceKind, texel_bytes};
+use super::shader::{Shader, ShaderError};
+use super::whole::Frame;
 use lapidary_gpu::Gpu;
 use lapidary_scene::{Encoding, Texels};
 use std::collections::HashMap;
@@ -59,6 +63,11 @@ impl<'gpu> Builder<'gpu> {
     /// Returns the device that the frame is made for; `None` if there is none.
     pub(crate) fn gpu(&self) -> Option<&'gpu Gpu> {
         self.gpu
+    }
+
+    /// Returns whether the frame is made for lavapipe.
+    pub(crate) fn is_for_lavapipe(&self) -> bool {
+        self.gpu.is_some_and(Gpu::is_lavapipe)
     }
 
     /// Returns the limits that every device meets; no device is asked for more.

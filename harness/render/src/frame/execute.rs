@@ -1,7 +1,13 @@
 //! A frame on a wgpu device: everything is created once, then run any number of times.
 
-use super::*;
+use super::handles::{Bound, Buffer, Sampler, Texture};
+use super::pass::{ComputePass, Depth, Pass, Read, RenderPass, Target, Workgroups};
+use super::pipeline::{BindGroup, Blend, Pipeline, PipelineKind};
+use super::resource::{Contents, Resource, ResourceKind, texel_bytes};
+use super::shader::Shader;
+use super::whole::Frame;
 use lapidary_gpu::{Gpu, GpuError};
+use std::borrow::Cow;
 use std::ops::Range;
 use wgpu::util::DeviceExt as _;
 
@@ -15,6 +21,7 @@ pub struct Executor<'gpu> {
     bind_groups: Vec<wgpu::BindGroup>,
 }
 
+/// A resource on the device.
 #[derive(Debug)]
 enum Made {
     Buffer(wgpu::Buffer),
@@ -22,6 +29,7 @@ enum Made {
     Sampler(wgpu::Sampler),
 }
 
+/// A pipeline on the device.
 #[derive(Debug)]
 enum Compiled {
     Render(wgpu::RenderPipeline),
@@ -43,23 +51,23 @@ impl<'gpu> Executor<'gpu> {
     /// # Errors
     /// If the device rejects a shader or runs out of memory.
     pub fn new(gpu: &'gpu Gpu, mut frame: Frame) -> Result<Self, GpuError> {
-        let resource = |of: &Resource| {
-            let what = format!("making `{}`", of.name);
-            if of.is_left_out() {
+        let make = |resource: &Resource| {
+            let what = format!("making `{}`", resource.name);
+            if resource.is_left_out() {
                 let reason = "its contents were left out: the frame was made without a device".to_owned();
                 return Err(GpuError::Device { what, reason });
             }
-            gpu.guarded(&what, |_| made(gpu, of))
+            gpu.guarded(&what, |_| made(gpu, resource))
         };
-        let resources = frame.resources.iter().map(resource).collect::<Result<_, _>>()?;
+        let resources = frame.resources.iter().map(make).collect::<Result<_, _>>()?;
         // The device holds them now.
         frame.resources.iter_mut().for_each(Resource::leave_out);
-        let pipeline = |of: &Pipeline| {
-            gpu.guarded(&format!("compiling `{}` of recipe `{}`", of.name, of.shader.recipe()), |device| {
-                compiled(device, of)
+        let compile = |pipeline: &Pipeline| {
+            gpu.guarded(&format!("compiling `{}` of recipe `{}`", pipeline.name, pipeline.shader.recipe()), |device| {
+                compiled(device, pipeline)
             })
         };
-        let pipelines = frame.pipelines.iter().map(pipeline).collect::<Result<_, _>>()?;
+        let pipelines = frame.pipelines.iter().map(compile).collect::<Result<_, _>>()?;
         let mut executor = Self { gpu, frame, resources, pipelines, bind_groups: Vec::new() };
         executor.bind_groups = gpu.guarded("binding resources", |device| {
             executor.frame.bind_groups.iter().map(|group| executor.bind_group(device, group)).collect()
@@ -183,8 +191,8 @@ impl<'gpu> Executor<'gpu> {
             let (now, later) = rest.split_at(start + count);
             self.submit(now)?;
             for pass in &now[start..] {
-                if let Pass::Read(of) = pass {
-                    self.bring_back(of, &mut read)?;
+                if let Pass::Read(part) = pass {
+                    self.bring_back(part, &mut read)?;
                 }
             }
             rest = later;
@@ -290,17 +298,18 @@ impl<'gpu> Executor<'gpu> {
     }
 
     /// Waits for the data copied to a buffer, and passes its rows on.
-    fn bring_back(&self, of: &Read, read: &mut impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
-        let Read { texture, size: [width, height], buffer, bytes_per_row, .. } = of;
+    fn bring_back(&self, part: &Read, read: &mut impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
+        let Read { texture, size: [width, height], buffer, bytes_per_row, .. } = part;
         let used = (width * texel_bytes(self.texture(*texture).format())) as usize;
         self.gpu.read_back(self.buffer(*buffer), u64::from(*bytes_per_row) * u64::from(*height), |bytes| {
             let rows: Vec<u8> =
                 bytes.chunks_exact(*bytes_per_row as usize).flat_map(|row| &row[..used]).copied().collect();
-            read(of, &rows);
+            read(part, &rows);
         })
     }
 }
 
+/// Creates a resource.
 fn made(gpu: &Gpu, resource: &Resource) -> Made {
     let (device, label) = (&gpu.device, Some(&*resource.name));
     match &resource.kind {
@@ -352,9 +361,10 @@ fn made(gpu: &Gpu, resource: &Resource) -> Made {
     }
 }
 
+/// Compiles a pipeline.
 fn compiled(device: &wgpu::Device, pipeline: &Pipeline) -> Compiled {
     let label = Some(&*pipeline.name);
-    let module = device.create_shader_module(pipeline.shader.module_descriptor());
+    let module = device.create_shader_module(module_descriptor(&pipeline.shader));
     let entry = |place: usize| pipeline.shader.entries().get(place).map(String::as_str);
     let PipelineKind::Render { targets, depth, cull, blend } = &pipeline.kind else {
         return Compiled::Compute(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -402,4 +412,9 @@ fn compiled(device: &wgpu::Device, pipeline: &Pipeline) -> Compiled {
         multiview_mask: None,
         cache: None,
     }))
+}
+
+/// Returns the descriptor that creates a shader's module on a device.
+fn module_descriptor(shader: &Shader) -> wgpu::ShaderModuleDescriptor<'static> {
+    wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone())) }
 }

@@ -1,9 +1,10 @@
 //! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the
 //! mirrors.
 
-use super::SurfacePoint;
-use crate::walk::Walked;
-use crate::{RenderError, Settings};
+use super::surface::SurfacePoint;
+use crate::error::RenderError;
+use crate::settings::Settings;
+use crate::stone::facet_map::Walked;
 use glam::{Vec3, Vec4};
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;

@@ -111,8 +111,8 @@ impl Plan {
         for (number, step) in (1..).zip(steps) {
             let times = if step.times > 1 { format!(" x {}", step.times) } else { String::new() };
             writeln!(f, "{number:>3}  {:<pass$}  {:<object$}  {}{times}", step.pass, step.object, step.pipeline)?;
-            let own = format!("{}/", step.object);
-            let names = step.resources.iter().map(|name| name.strip_prefix(&own).unwrap_or(name).to_owned());
+            let prefix = format!("{}/", step.object);
+            let names = step.resources.iter().map(|name| name.strip_prefix(&prefix).unwrap_or(name).to_owned());
             list(f, "       ", names)?;
         }
         Ok(())
@@ -164,11 +164,11 @@ impl Plan {
         let objects = self.objects.iter().map(|planned| planned.object.clone());
         let owners = std::iter::once(String::new()).chain(objects);
         for name in owners {
-            let Some(own) = by_owner.get(&name) else { continue };
-            let sum = own.iter().map(|resource| resource.bytes).sum();
+            let Some(owned) = by_owner.get(&name) else { continue };
+            let sum = owned.iter().map(|resource| resource.bytes).sum();
             writeln!(f, "  {}: {}", if name.is_empty() { "of all" } else { &name }, bytes(sum))?;
             let prefix = format!("{name}/");
-            let shown = own.iter().map(|resource| {
+            let shown = owned.iter().map(|resource| {
                 let short = resource.name.strip_prefix(&prefix).unwrap_or(&resource.name);
                 if resource.kind == Kind::Sampler {
                     short.to_owned()

@@ -1,4 +1,0 @@
-//! The lookup table of the curvature-dependent reflectance: baked on the GPU, stored in a texture's
-//! format, looked up.
-
-pub mod table;

@@ -1,0 +1,72 @@
+//! Images of materials in a frame, as the part `material_textures` reads them.
+
+mod levels;
+mod normals;
+
+use crate::frame::record::Record;
+use crate::frame::{Bound, Builder, PipelineId};
+use glam::Vec3;
+use lapidary_scene::{Encoding, Material, Mesh, Texture, TextureTransform, Wrap};
+use normals::{Normals, texel_length};
+
+/// Bindings of the part, in group 1.
+const BASE_COLOR: [u32; 2] = [11, 12];
+const NORMAL: [u32; 2] = [13, 14];
+const THICKNESS: [u32; 2] = [16, 17];
+const TRANSMISSION: [u32; 2] = [18, 19];
+
+/// Fills a `TexturePlace` for a texture; the identity for none.
+pub(crate) fn place(record: Record, texture: Option<&Texture>) -> Record {
+    let transform = texture.map_or(TextureTransform::IDENTITY, |texture| texture.transform).affine();
+    let row =
+        |row: usize| Vec3::new(transform.matrix2.row(row).x, transform.matrix2.row(row).y, transform.translation[row]);
+    record.with("u", row(0)).with("v", row(1))
+}
+
+/// Adds the images that a pipeline reads of a body's material, and the samplers; returns them by binding. `reach` is how
+/// far each channel's light spreads and evens out slopes, as a standard deviation in units of length.
+pub(crate) fn bound(
+    builder: &mut Builder<'_>,
+    pipeline: PipelineId,
+    material: &Material,
+    (mesh, reach): (&Mesh, Vec3),
+) -> Vec<(u32, Bound)> {
+    let mut bound: Vec<(u32, Bound)> = Vec::new();
+    let reads = |builder: &Builder<'_>, bindings: [u32; 2]| builder.binds(pipeline, 1, bindings[0]);
+    for (slot, name, sampler, bindings) in [
+        (&material.base_color_texture, "base colour image", "base colour image's sampler", BASE_COLOR),
+        (&material.thickness_texture, "thickness image", "thickness image's sampler", THICKNESS),
+        (&material.diffuse_transmission_texture, "transmission image", "transmission image's sampler", TRANSMISSION),
+    ] {
+        let (Some(texture), true) = (slot, reads(builder, bindings)) else { continue };
+        let texels = &texture.texels;
+        let image = builder.image((texels, texture.encoding), |builder| {
+            let format = match texture.encoding {
+                Encoding::Srgb => wgpu::TextureFormat::Rgba8UnormSrgb,
+                Encoding::Linear => wgpu::TextureFormat::Rgba8Unorm,
+            };
+            let size = [texels.width(), texels.height(), 1];
+            builder.mipped(name, format, size, levels::of_image(texels, texture.encoding))
+        });
+        let sampler = builder.sampler(sampler, texture.wrap.map(address));
+        bound.extend([(bindings[0], image.into()), (bindings[1], sampler.into())]);
+    }
+    if let (Some(texture), true) = (&material.normal_texture, reads(builder, NORMAL)) {
+        let layers =
+            Normals::of(texture, material.normal_scale).layers(texture.wrap, reach / texel_length(mesh, texture));
+        let size = [layers.size[0], layers.size[1], 4];
+        let image = builder.mipped("normals by image", wgpu::TextureFormat::Rg16Float, size, layers.levels());
+        let sampler = builder.sampler("normal image's sampler", texture.wrap.map(address));
+        let image = Bound::Texture(image, wgpu::TextureViewDimension::D2Array);
+        bound.extend([(NORMAL[0], image), (NORMAL[1], sampler.into())]);
+    }
+    bound
+}
+
+fn address(wrap: Wrap) -> wgpu::AddressMode {
+    match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::MirroredRepeat => wgpu::AddressMode::MirrorRepeat,
+        Wrap::ClampToEdge => wgpu::AddressMode::ClampToEdge,
+    }
+}
