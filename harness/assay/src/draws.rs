@@ -7,12 +7,14 @@
 
 #[cfg(feature = "gpu")]
 mod shrinking;
+#[cfg(feature = "gpu")]
+mod tree;
 
 use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
 #[cfg(feature = "gpu")]
-pub use shrinking::Tree;
+pub use tree::Tree;
 
 /// A stream of random draws, or the replay of a record.
 #[derive(Debug)]
@@ -162,7 +164,7 @@ pub struct Domain<T> {
     generate: Arc<dyn Fn(&mut Draws<'_>) -> T + Send + Sync>,
     /// Shrinks a row other than through its draws.
     #[cfg(feature = "gpu")]
-    tree: Option<shrinking::MakeTree<T>>,
+    tree: Option<tree::MakeTree<T>>,
 }
 
 impl<T> Domain<T> {

@@ -17,11 +17,15 @@
 //! # Ok::<(), lapidary_browser::BrowserError>(())
 //! ```
 
+mod adapter;
 mod connection;
 mod driver;
+mod error;
 
+pub use adapter::Adapter;
 use connection::Connection;
 pub use driver::Page;
+pub use error::BrowserError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -29,39 +33,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Names of the programs searched for on the PATH.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-
-/// The reasons why a browser gave no answer.
-#[derive(Debug, thiserror::Error)]
-pub enum BrowserError {
-    /// The browser cannot be started, or the connection fails.
-    #[error("{0}")]
-    Connection(String),
-    /// The browser's WebGPU refused the job.
-    #[error("{0}")]
-    Refused(String),
-}
-
-/// The adapter that the browser uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Adapter {
-    /// SwiftShader, which is part of Chromium: the same on every machine.
-    #[default]
-    SwiftShader,
-    /// The browser's own choice: the machine's GPU if it has one.
-    Own,
-}
-
-impl std::str::FromStr for Adapter {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "swiftshader" => Ok(Adapter::SwiftShader),
-            "own" => Ok(Adapter::Own),
-            _ => Err("expected swiftshader, or own for the browser's own choice".to_owned()),
-        }
-    }
-}
 
 /// A compiler message about a text.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]

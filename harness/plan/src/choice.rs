@@ -4,19 +4,9 @@ use super::effect::Effect;
 use super::numbers::short;
 use super::quality::Technique;
 use super::thickness::Thickness;
+use crate::request::Scattering;
 use crate::{Quality, Request, Rung};
 use lapidary_scene::{Object, Scene, Shape};
-
-/// A technique that the user forces for all scattering bodies, whatever their thickness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scattering {
-    /// Scattering near the surface, by its curvature.
-    Cdrf,
-    /// Light paths through the body.
-    OpticalPath,
-    /// Diffusion through the body.
-    Diffusion,
-}
 
 /// How an object is drawn: by a rung that the user or the material names, or by a technique.
 pub(super) enum Choice {

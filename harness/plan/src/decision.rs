@@ -3,10 +3,10 @@
 
 use super::casting::{self, Casting};
 use super::choice::{self, Choice};
+use super::chosen::Chosen;
 use super::effect::{Effect, Effects};
 use super::enclosed;
 use super::numbers::{short, triple};
-use super::quality::Chosen;
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;

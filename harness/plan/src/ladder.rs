@@ -192,6 +192,14 @@ impl Ladder {
     }
 }
 
+impl Technique {
+    /// Returns the committed ladder; `None` for a technique with a single rung.
+    #[must_use]
+    pub fn ladder(self) -> Option<&'static Ladder> {
+        Ladder::committed(self)
+    }
+}
+
 /// A report of `cook cost`, as far as it is read here.
 #[derive(Debug, Deserialize)]
 pub struct Record {

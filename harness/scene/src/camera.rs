@@ -64,6 +64,13 @@ impl Camera {
     }
 }
 
+/// Returns the unit vector `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
+pub(crate) fn direction(polar: f32, azimuth: f32) -> Vec3 {
+    let (across, along) = polar.to_radians().sin_cos();
+    let (x, z) = azimuth.to_radians().sin_cos();
+    Vec3::new(across * x, along, across * z)
+}
+
 /// Extent of points along one picture axis.
 #[derive(Debug, Clone, Copy)]
 struct Extent {

@@ -1,10 +1,8 @@
 //! Copies of one shape at many places, which a renderer may draw in one call.
 
-use std::collections::HashMap;
-
 use glam::{DMat4, DQuat, DVec3, Mat3, Quat, Vec3, Vec4};
 
-use super::{Bounds, Material, Mesh, Object};
+use super::{Material, Mesh};
 
 /// One shape and the places at which a body shows it.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,65 +106,9 @@ impl Copies {
     }
 }
 
-impl Object {
-    /// Returns a body that is shown once.
-    #[must_use]
-    pub fn new(name: impl Into<String>, mesh: Mesh, material: Material) -> Self {
-        Self { name: name.into(), mesh, material, copies: None }
-    }
-
-    /// Returns a body that shows `copies`.
-    #[must_use]
-    pub fn of_copies(name: impl Into<String>, copies: Copies, material: Material) -> Self {
-        Self { name: name.into(), mesh: copies.joined(), material, copies: Some(copies) }
-    }
-
-    /// Returns the greatest extent of the body along an axis, or of its first copy, turned upright.
-    #[must_use]
-    pub fn extent(&self) -> f32 {
-        let bounds = Bounds::of(self.shape().positions.iter().copied());
-        let scale = self.copies.as_ref().and_then(|copies| copies.places.first()).map_or(1.0, |place| place.scale);
-        scale * (bounds.max - bounds.min).max_element()
-    }
-
-    /// Returns the surface of one copy in its own space; the mesh of a body that is shown once.
-    #[must_use]
-    pub fn shape(&self) -> &Mesh {
-        self.copies.as_ref().map_or(&self.mesh, |copies| &copies.shape)
-    }
-
-    /// Returns the materials of all copies, or the material of a body that is shown once.
-    pub fn materials(&self) -> impl Iterator<Item = Material> + '_ {
-        let places = self.copies.as_ref().map_or(&[Place::IDENTITY][..], |copies| &copies.places);
-        places.iter().map(|place| place.material(&self.material))
-    }
-
-    /// Returns the copies of each colour as one body, in the order of their first copies.
-    #[must_use]
-    pub fn apart(&self) -> Vec<Self> {
-        let Some(Copies { shape, places }) = &self.copies else { return vec![self.clone()] };
-        let key = |place: &Place| {
-            let bits = |color: Vec3| color.to_array().map(f32::to_bits);
-            (bits(place.base_color), place.attenuation_color.map(bits))
-        };
-        let mut numbers = HashMap::new();
-        let mut bodies: Vec<Self> = Vec::new();
-        for place in places {
-            let copy = shape.transformed(place.transform());
-            let number = *numbers.entry(key(place)).or_insert(bodies.len());
-            match bodies.get_mut(number) {
-                Some(body) => body.mesh.append(&copy),
-                None => bodies.push(Self::new(&*self.name, copy, place.material(&self.material))),
-            }
-        }
-        bodies
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Scene;
 
     fn place() -> Place {
         let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -1.1, 2.0);
@@ -195,24 +137,5 @@ mod tests {
         let point = Vec3::new(0.2, 0.7, -0.4);
         let rows = place().rows().map(|row| row.dot(point.extend(1.0)));
         assert!(Vec3::from(rows).distance(place().transform().transform_point3(point.as_dvec3()).as_vec3()) < 1e-6);
-    }
-
-    #[test]
-    fn copies_apart_are_one_body_for_each_colour() {
-        let stone = Scene::named("octahedron").expect("built in").objects.remove(0);
-        let red = Place { attenuation_color: Some(Vec3::X), base_color: Vec3::splat(0.5), ..place() };
-        let again = Place { translation: Vec3::splat(9.0), ..red };
-        let copies = Copies { shape: stone.mesh.clone(), places: vec![Place::IDENTITY, red, again] };
-        assert!(copies.is_coloured());
-        let both = Object::of_copies("both", copies, stone.material.clone());
-        let apart = both.apart();
-        assert_eq!((apart.len(), &apart[0].mesh), (2, &stone.mesh));
-        let mut joined = stone.mesh.clone();
-        joined.append(&apart[1].mesh);
-        assert_eq!(both.mesh, joined);
-        assert_eq!(apart[1].material, red.material(&stone.material));
-        assert_eq!(apart[1].material.attenuation_color, Vec3::X);
-        let materials = [0, 1, 1].map(|body: usize| apart[body].material.clone());
-        assert_eq!(both.materials().collect::<Vec<_>>(), materials);
     }
 }

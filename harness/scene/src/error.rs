@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::built_in::names;
+use super::built_in::list::names;
 use super::cuts::CutError;
 use super::gltf::GltfError;
 

@@ -18,7 +18,8 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::camera::Camera;
-use super::{Object, Scene, SceneError, vertices};
+use super::object::vertices;
+use super::{Object, Scene, SceneError};
 
 mod accessor;
 mod budget;
@@ -34,6 +35,7 @@ mod instances;
 mod json;
 mod lacking;
 mod light_node;
+mod limits;
 mod material;
 mod medium;
 mod nodes;
@@ -46,44 +48,10 @@ mod uri;
 
 pub use error::GltfError;
 pub(super) use instances::{COLORING, NAME as INSTANCING};
+pub use limits::{
+    KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_FILE_BYTES, MAX_IMAGE_BYTES, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES,
+};
 pub(super) use texture::TRANSFORM as TEXTURE_TRANSFORM;
-
-/// Maximum size of a file, and of all buffers of a file together: 1 GiB.
-pub const MAX_FILE_BYTES: u64 = 1 << 30;
-
-/// Maximum number of triangles in a scene, counting every instance: 2²⁴; three times as many
-/// vertices are allowed. Such a scene takes 0.4 GB with shared vertices, 1.4 GB without, and 1.8 GB
-/// if unshared vertices have texture coordinates; colours as well would exceed
-/// [`MAX_SCENE_BYTES`].
-pub const MAX_TRIANGLES: u64 = 1 << 24;
-
-/// Maximum memory for all decoded images of a scene: 512 MiB, two of 8192 x 8192 texels.
-pub const MAX_IMAGE_BYTES: u64 = 1 << 29;
-
-/// Maximum memory for all bodies of a scene, counting every instance: 2 GiB. The file, its
-/// buffers and its images come on top.
-pub const MAX_SCENE_BYTES: u64 = 1 << 31;
-
-/// Maximum number of bodies in a scene: 2¹⁶. The `EXT_mesh_gpu_instancing` instances of a primitive
-/// form one body, or a few if they are large.
-pub const MAX_OBJECTS: u64 = 1 << 16;
-
-/// Largest world coordinate. Two edges within it are at most 2√3·10⁹ long, so the square of their
-/// cross product, the largest number that the shaders compute from them, is below 1.5·10³⁸ and fits
-/// in an f32.
-pub const MAX_COORDINATE: f32 = 1e9;
-
-/// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 8] = [
-    "KHR_materials_ior",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "KHR_materials_dispersion",
-    "KHR_materials_diffuse_transmission",
-    "KHR_lights_punctual",
-    "EXT_mesh_gpu_instancing",
-    "KHR_texture_transform",
-];
 
 /// Default camera for a scene without one: vertical field of view in radians, and direction towards
 /// the eye.

@@ -4,12 +4,13 @@
 //! result, not a matter of taste: the centre of curvature of a brilliant's table moves from -1.2 to
 //! -3.8 girdle radii with it.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::Mesh;
+mod hard_edges;
+
+pub use hard_edges::{has_hard_edges, soft_normals};
 
 /// How the normals of the faces around a vertex are weighted in its shared normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -86,32 +87,6 @@ pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging)
     welded.into_iter().map(|vertex| sums[vertex].normal()).collect()
 }
 
-/// Cosine of the largest angle, 1°, between two normals at one position that count as the same.
-/// Exporters that split vertices along texture seams write the same normal twice, up to rounding.
-const SAME_NORMAL: f32 = 0.999_848;
-
-/// Whether normals at one position differ, as in flat shading.
-#[must_use]
-pub fn has_hard_edges(mesh: &Mesh) -> bool {
-    let (welded, count) = weld(&mesh.positions);
-    let mut first: Vec<Option<Vec3>> = vec![None; count];
-    mesh.indices.iter().chain(&mesh.halo).any(|&vertex| {
-        let vertex = vertex as usize;
-        let (Some(&place), Some(&normal)) = (welded.get(vertex), mesh.normals.get(vertex)) else { return false };
-        first[place].get_or_insert(normal).dot(normal) < SAME_NORMAL
-    })
-}
-
-/// Returns one normal for each position: the mesh's own, or, if it has hard edges, the
-/// angle-weighted mean of its triangles' normals.
-#[must_use]
-pub fn soft_normals(mesh: &Mesh) -> Cow<'_, [Vec3]> {
-    if has_hard_edges(mesh) {
-        return shared_normals(&mesh.positions, &mesh.indices, Averaging::Angle).into();
-    }
-    Cow::Borrowed(&mesh.normals)
-}
-
 /// Returns, for each position, the number of its first exact equal, and how many different ones
 /// there are.
 #[must_use]
@@ -182,7 +157,7 @@ mod tests {
     use super::*;
 
     /// A unit cube as twelve triangles, each face cut along the diagonal from its first corner.
-    fn cube() -> (Vec<Vec3>, Vec<u32>) {
+    pub(super) fn cube() -> (Vec<Vec3>, Vec<u32>) {
         let positions =
             (0..8u8).map(|k| Vec3::new(f32::from(k & 1), f32::from(k >> 1 & 1), f32::from(k >> 2))).collect();
         let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -206,26 +181,6 @@ mod tests {
                 .any(|(position, normal)| normal.distance((position - centre).normalize()) > 0.1),
             "counting triangles plainly must show the diagonals, or this test proves nothing"
         );
-    }
-
-    #[test]
-    fn hard_edges_are_found_and_softened() {
-        let (positions, indices) = cube();
-        let soft = Mesh::with_shared_normals(positions, indices, Averaging::Angle);
-        let corners: Vec<Vec3> = soft.indices.iter().map(|&k| soft.positions[k as usize]).collect();
-        let normals = corners.chunks_exact(3).flat_map(|t| [(t[1] - t[0]).cross(t[2] - t[0]).normalize(); 3]).collect();
-        let order = (0..corners.len() as u32).collect();
-        let hard = Mesh { positions: corners, normals, indices: order, ..Mesh::default() };
-        assert!(has_hard_edges(&hard) && !has_hard_edges(&soft));
-        for (softened, &index) in soft_normals(&hard).iter().zip(&soft.indices) {
-            assert_eq!(*softened, soft.normals[index as usize]);
-        }
-        assert!(matches!(soft_normals(&soft), Cow::Borrowed(_)));
-        // The built-ins' own averages stay unchanged, including those not weighted by angle and
-        // seams that differ by rounding.
-        for name in ["brilliant_plain", "brilliant_area", "prism_chain", "skin"] {
-            assert!(!has_hard_edges(&crate::Scene::named(name).unwrap().objects[0].mesh), "{name}");
-        }
     }
 
     #[test]

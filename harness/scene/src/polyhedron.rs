@@ -1,70 +1,19 @@
 //! A convex polyhedron from the planes of its facets, in f64 and z up.
 
 use glam::{DVec3, Vec3, Vec4};
-use thiserror::Error;
 
 use super::mesh::Mesh;
 use super::normals::{Averaging, NormalSum, interior_angle};
 use assembly::{corners, ordered_loop, tolerance, unit_planes, without_repeats};
 
 mod assembly;
+mod error;
+mod plane;
 mod triangulation;
 
+pub use error::{MAX_PLANES, PolyhedronError};
+pub use plane::Plane;
 pub use triangulation::Triangulation;
-
-/// The half-space `normal · x <= distance`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
-    /// Outward normal; [`Polyhedron::from_planes`] scales it to unit length.
-    pub normal: DVec3,
-    /// Distance of the plane from the origin along the normal, in units of the normal's length.
-    pub distance: f64,
-}
-
-impl Plane {
-    /// Returns the plane through `point` with the outward `normal`.
-    #[must_use]
-    pub fn through(point: DVec3, normal: DVec3) -> Self {
-        let normal = normal.normalize_or_zero();
-        Self { normal, distance: normal.dot(point) }
-    }
-
-    /// Returns the signed distance of `point` from the plane, positive outside.
-    #[must_use]
-    pub fn height(&self, point: DVec3) -> f64 {
-        self.normal.dot(point) - self.distance
-    }
-}
-
-/// Why planes do not make a polyhedron.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum PolyhedronError {
-    /// A plane without a direction, or with a component that is not a number.
-    #[error("plane {plane} has a zero or non-finite normal or distance; give it a direction")]
-    BadPlane {
-        /// Index of the plane in the list, from 0.
-        plane: usize,
-    },
-    /// Too many planes: the time grows with the square of their number.
-    #[error("{planes} planes are too many for one stone; use at most {MAX_PLANES}")]
-    TooManyPlanes {
-        /// Number of planes given.
-        planes: usize,
-    },
-    /// No corner lies on the inner side of all planes, or all corners lie in one plane.
-    #[error(
-        "the planes enclose nothing: they leave no volume or never meet at a corner; \
-         move them outwards or add the missing sides"
-    )]
-    Empty,
-    /// A face has an edge without a neighbouring face.
-    #[error("the planes leave an open side; add planes until the solid is closed")]
-    Unbounded,
-}
-
-/// Largest number of planes that [`Polyhedron::from_planes`] takes: as many as a map of facets can
-/// number.
-pub const MAX_PLANES: usize = lapidary_convex_walk::CONVEX_WALK_FACE as usize + 1;
 
 /// A bounded convex polyhedron. Faces wind counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]

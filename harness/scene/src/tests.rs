@@ -1,8 +1,9 @@
 use std::collections::{HashMap, HashSet};
 
-use glam::{DQuat, DVec3, Quat};
+use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::*;
+use crate::object::vertices;
 
 #[test]
 fn every_built_in_opens_by_its_name_and_only_those() {

@@ -18,6 +18,7 @@ pub mod indentation;
 mod items;
 mod library;
 mod names;
+mod overrides;
 mod settled;
 mod shader;
 

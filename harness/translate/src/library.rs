@@ -4,7 +4,7 @@ use crate::declarations::{self, Declaration, declarations, of_functions, words};
 use crate::hlsl;
 use crate::items::{Item, Kind, items};
 use crate::names::{camel, prefix_helpers, take_numbers_off};
-use crate::shader::with_defaults;
+use crate::overrides::with_defaults;
 use crate::{Language, Setting, TranslateError, written};
 use naga::ShaderStage;
 use naga::back::glsl;

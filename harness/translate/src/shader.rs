@@ -6,9 +6,9 @@ use crate::hlsl;
 use crate::items::{Item, items};
 use crate::library::{commented, culprit, other_names};
 use crate::names::{rename_globals, restore_globals, take_numbers_off};
+use crate::overrides::with_defaults;
 use crate::{Language, Setting, TranslateError, written};
 use naga::back::{glsl, spv};
-use naga::valid::ModuleInfo;
 use naga::{AddressSpace, Module, ShaderStage};
 
 /// Translates a whole shader. Its first comment tells what was set, and where each binding is found.
@@ -120,15 +120,6 @@ fn entry_of(
         (None, [only]) => Ok(Some((only.name.clone(), only.stage))),
         (None, _) => Err(TranslateError::WhichEntryPoint { language: language.title(), found: found() }),
     }
-}
-
-/// Returns the module with its overrides' defaults as constants: naga's writers know no overrides.
-pub(crate) fn with_defaults(module: &Module) -> Result<(Module, ModuleInfo), String> {
-    let info = lapidary_specialise::validate(module).map_err(|error| error.to_string())?;
-    let constants = naga::back::PipelineConstants::default();
-    let (module, info) = naga::back::pipeline_constants::process_overrides(module, &info, None, &constants)
-        .map_err(|error| error.to_string())?;
-    Ok((module.into_owned(), info.into_owned()))
 }
 
 /// Returns the source with its depth textures as textures of floats; `None` if it has none, or if they are

@@ -1,16 +1,17 @@
 //! One dispatch: sends a batch of rows to the device and reads back results and turn counts.
 
+use super::compiled::Compiled;
+use super::error::DispatchError;
 use super::kernel::WORKGROUP_SIZE;
 use super::turns::{self, LAVAPIPE_ENDS_AT};
-use super::{DispatchError, Kernel};
-use crate::runner::Runner;
+use lapidary_gpu::Gpu;
 
 /// Workgroups along one axis that WebGPU guarantees.
 const MOST_WORKGROUPS: usize = 65_535;
 
 /// Device buffers for the rows.
 #[derive(Debug)]
-pub(super) struct Buffers {
+struct Buffers {
     capacity: usize,
     inputs: wgpu::Buffer,
     outputs: wgpu::Buffer,
@@ -20,7 +21,19 @@ pub(super) struct Buffers {
     staging: Vec<u8>,
 }
 
-impl Kernel<'_> {
+/// A compiled kernel on its device, with the buffers that its batches share.
+#[derive(Debug)]
+pub(super) struct Dispatcher<'gpu> {
+    pub(super) gpu: &'gpu Gpu,
+    pub(super) compiled: Compiled,
+    buffers: Option<Buffers>,
+}
+
+impl<'gpu> Dispatcher<'gpu> {
+    pub(super) fn new(gpu: &'gpu Gpu, compiled: Compiled) -> Self {
+        Self { gpu, compiled, buffers: None }
+    }
+
     /// Runs a batch. `turns` then holds the count of each row, or is empty if the function has no
     /// loop.
     pub(super) fn batch(
@@ -40,9 +53,9 @@ impl Kernel<'_> {
             .enumerate()
             .filter(|(_, group)| group.iter().map(|turns| u64::from(*turns)).sum::<u64>() >= LAVAPIPE_ENDS_AT)
             .flat_map(|(group, rows)| (0..rows.len()).map(move |row| group * WORKGROUP_SIZE as usize + row))
-            .filter(|row| !self.is_over(turns[*row]))
+            .filter(|row| !self.compiled.is_over(turns[*row]))
             .collect();
-        let (width, result_width) = (self.argument_words(), self.result_words());
+        let (width, result_width) = (self.compiled.argument_words(), self.compiled.result_words());
         let (mut again, mut counted) = (Vec::new(), Vec::new());
         for rows in suspect.chunks(MOST_WORKGROUPS) {
             let inputs: Vec<u32> =
@@ -64,7 +77,7 @@ impl Kernel<'_> {
         results: &mut Vec<u32>,
         turns: &mut Vec<u32>,
     ) -> Result<(), DispatchError> {
-        let rows = arguments.len() / self.argument_words();
+        let rows = arguments.len() / self.compiled.argument_words();
         if self.buffers.as_ref().is_none_or(|buffers| buffers.capacity < rows) {
             self.buffers = Some(self.allocate(rows)?);
         }

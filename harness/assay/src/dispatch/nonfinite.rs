@@ -2,10 +2,12 @@
 //! leaves the effect of one in `clamp`, `min` or `select` to each device, so a result that depends
 //! on it is right by chance.
 
+use super::error::DispatchError;
 use super::kernel::{self, kernel_source};
 use super::layout::Layout;
+use super::module::KernelModule;
 use super::signature::Signature;
-use super::{DispatchError, KernelModule, parse};
+use super::source::parse;
 use lapidary_specialise::validate;
 use naga::{BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, MathFunction};
 use naga::{RelationalFunction, Scalar, ScalarKind, Span, Statement, TypeInner, VectorSize};

@@ -16,12 +16,6 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// Reads the signature of `function` in WGSL source; `path` appears in messages.
-    pub fn of_source(source: &str, path: &str, function: &str) -> Result<Signature, super::DispatchError> {
-        let (module, _) = super::parse(source, path)?;
-        Ok(Signature::reflect(&module, function)?)
-    }
-
     /// Reads the signature of `function` from a naga module.
     pub fn reflect(module: &naga::Module, function: &str) -> Result<Signature, SignatureError> {
         let Some((_, found)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)) else {

@@ -1,18 +1,12 @@
 //! Domains and proptest: a domain is a strategy that shrinks failing values through their draws;
 //! conversely, a strategy makes a domain.
 
+use super::tree::{MakeTree, Seed, Tree};
 use super::{Domain, Draws};
 use proptest::strategy::{NewTree, Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::fmt::Debug;
 use std::sync::Arc;
-
-/// A failing value on its way to a simpler one.
-pub type Tree<T> = Box<dyn ValueTree<Value = T>>;
-/// Makes the tree of a row of a run.
-pub(super) type MakeTree<T> = Arc<dyn Fn(Seed) -> Tree<T> + Send + Sync>;
-/// Draws that seed proptest's generator: 256 bits.
-type Seed = [u32; 8];
 
 impl<T: Debug + 'static> Domain<T> {
     /// Creates the domain of a proptest strategy. The strategy's own tree shrinks a failing value.

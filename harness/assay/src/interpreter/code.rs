@@ -1,7 +1,7 @@
 //! Compiled code of a function: operations on scalars in registers, with calls inlined, and vectors
 //! and structs split into scalars.
 
-use super::machine::Site;
+use super::site::Site;
 use naga::{BinaryOperator, MathFunction, ScalarKind};
 
 /// Index of a word.

@@ -1,15 +1,7 @@
 //! Machines for the interpreter: one rounds to nearest, one also notes every decision.
 
 use super::code::Float;
-
-/// Place of a decision: a function of the module and an expression of it, by their indices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Site {
-    /// Index of the function.
-    pub function: u32,
-    /// Index of the expression in it.
-    pub expression: u32,
-}
+use super::site::Site;
 
 /// A decision and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

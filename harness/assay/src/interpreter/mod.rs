@@ -5,23 +5,19 @@ mod code;
 mod compile;
 mod machine;
 mod run;
+mod site;
+mod stopped;
 
 pub use code::Float;
-pub use machine::{Assumption, Decision, Exact, Machine, Nearest, Operation, Site, Slack, Traced};
+pub use machine::{Assumption, Decision, Exact, Machine, Nearest, Operation, Slack, Traced};
 pub use run::Registers;
+pub use site::Site;
+pub use stopped::Stopped;
 
 use crate::dispatch::{self, DispatchError};
 use code::Code;
 use naga::valid::ModuleInfo;
 use naga::{Block, Expression, Function, Handle, Module, ScalarKind, Statement};
-
-/// Most operations of one call; more count as an endless loop.
-const MOST_OPERATIONS: u64 = 10_000_000;
-
-/// Reason why the interpreter cannot run a function, or stopped it before its end.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Stopped(String);
 
 /// A branch in the source of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]

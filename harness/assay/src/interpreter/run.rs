@@ -1,9 +1,13 @@
 //! Execution of the compiled code.
 
 use super::code::{Bound, Code, Float, Op};
-use super::machine::{Assumption, Exact, Machine, Operation, Site, Slack};
-use super::{MOST_OPERATIONS, Stopped};
+use super::machine::{Assumption, Exact, Machine, Operation, Slack};
+use super::site::Site;
+use super::stopped::Stopped;
 use naga::{BinaryOperator, MathFunction, ScalarKind};
+
+/// Most operations of one call; more count as an endless loop.
+const MOST_OPERATIONS: u64 = 10_000_000;
 
 /// Magnitudes of divisors for which the standard states the accuracy of a quotient.
 const DIVISORS: std::ops::RangeInclusive<f32> = f32::MIN_POSITIVE..=8.507_059e37;

@@ -1,7 +1,8 @@
 //! The results that hold at an input, as intervals: for whoever judges a result without the oracle.
 
+use super::numbers::OracleFn;
 use super::search::{InputBox, Search, Spread};
-use super::{OracleFn, Tolerance, Window};
+use super::{Tolerance, Window};
 use crate::order::{ordered, unordered};
 use crate::shape::Scalar;
 

@@ -1,7 +1,7 @@
 //! Range of an oracle over inputs within the `backward` allowance: corners of the box around the
 //! input, places at which a discrete result changes, and extrema.
 
-use super::{OracleFn, largest, number, ulp_of};
+use super::numbers::{OracleFn, largest, number, ulp_of};
 use crate::draws::mix;
 use crate::golden_section::golden_section;
 use crate::shape::{Leaf, Scalar};

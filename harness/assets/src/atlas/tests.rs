@@ -157,7 +157,7 @@ fn check_scale(mesh: &Mesh) {
     let scale = maps[0].0;
     for (larger, smaller) in maps {
         assert!((larger / scale - 1.0).abs() < 1e-3, "{larger}, {scale}");
-        assert!(smaller / scale > charts::LEAST_COSINE - 1e-3, "{smaller}, {scale}");
+        assert!(smaller / scale > charts::surface::LEAST_COSINE - 1e-3, "{smaller}, {scale}");
     }
 }
 

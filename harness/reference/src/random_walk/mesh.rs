@@ -12,18 +12,22 @@
 //! The eye and the lights must lie outside the bodies; a point light inside gives the right mean,
 //! but its error has no bound. Behind a [dielectric boundary](Boundary::Dielectric) it is refused.
 
+mod boundary;
 mod estimate;
 mod from_lights;
+mod pass;
 mod walk;
+
+pub use boundary::Boundary;
+pub use estimate::Rendering;
+pub use pass::Origin;
 
 use super::generator;
 use estimate::{Estimate, Sums};
-use glam::DVec2;
 use lapidary_scene::mesh_diagnosis::open_edges;
 use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Light, Scene};
-use rand::RngExt as _;
-use rand::rngs::Xoshiro256PlusPlus;
+use pass::{Pass, stratum};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use walk::{Beginnings, Matter, Ray};
@@ -51,78 +55,6 @@ pub struct Settings<'environment> {
     pub environment: Option<&'environment Environment>,
     /// How surfaces act on light.
     pub boundary: Boundary,
-}
-
-/// Starting point of walks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Origin {
-    /// From the eye, with a number of walks for each pixel.
-    #[default]
-    Eye,
-    /// From the lights: less noise for the same time, least in the brightest pixels. Only for the
-    /// scene's own lights.
-    Lights,
-}
-
-impl Origin {
-    /// All origins.
-    pub const ALL: [Self; 2] = [Self::Eye, Self::Lights];
-
-    /// Returns the usual name in the field.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Eye => "eye",
-            Self::Lights => "lights",
-        }
-    }
-
-    fn other(self) -> Self {
-        match self {
-            Self::Eye => Self::Lights,
-            Self::Lights => Self::Eye,
-        }
-    }
-}
-
-/// How a body's surface acts on light.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Boundary {
-    /// Light passes unchanged.
-    #[default]
-    Matched,
-    /// Light is refracted by the material's refractive index and reflected by the Fresnel
-    /// reflectance, from outside and from inside, as at a polished surface. Mirror reflections of
-    /// the surroundings were not scattered and are left out.
-    ///
-    /// Each scattering is connected with each light, or with the eye, by all paths that are
-    /// refracted once and meet no other surface. Light that meets several surfaces before it is
-    /// scattered for the first time is found by as many walks from the other end. Left out are paths
-    /// that begin in this way at both ends; their share is about the product of the shares of such
-    /// light at the two ends, 0.03 % in a picture of the bunny and less in those of smooth bodies.
-    /// The environment is found by walks that leave; nothing of it is left out.
-    Dielectric,
-}
-
-/// A rendered image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rendering {
-    /// Linear radiance and coverage, row by row from the top: means over a pixel, so that its
-    /// uncovered part counts as black.
-    pub linear: Vec<[f32; 4]>,
-    /// Standard error of each pixel's red, green and blue.
-    ///
-    /// From the eye, it is computed as for independent samples. Since they are spread evenly over
-    /// the pixel, the true error is no greater, and less where the pixel's brightness varies. From
-    /// the lights, it is computed from the spread of 64 batches. Errors of walks from both ends are
-    /// added as independent.
-    pub standard_error: Vec<[f32; 3]>,
-    /// Number of walks that met a body.
-    pub walks: u64,
-    /// Number of scatterings of all walks together.
-    pub scatterings: u64,
-    /// Number of walks that slipped through a surface by rounding and were followed no further.
-    pub lost: u64,
 }
 
 /// Why an image cannot be rendered.
@@ -227,15 +159,6 @@ pub fn render(
     Ok(estimate.rendering())
 }
 
-/// Walks from one end.
-#[derive(Clone, Copy, Debug)]
-struct Pass {
-    origin: Origin,
-    /// Which of them count.
-    beginnings: Beginnings,
-    seed: u64,
-}
-
 /// Estimates the picture by walks from the eye.
 fn from_eye(
     matter: &Matter<'_>,
@@ -290,17 +213,6 @@ fn matter<'scene>(
         Some(light) => Err(WalkError::Inside { light }),
         None => Ok(matter),
     }
-}
-
-/// Samples a point of the unit square for one of `samples` samples: the largest square number of
-/// them get one cell of a grid each, the rest lie anywhere.
-fn stratum(sample: u64, samples: u64, random: &mut Xoshiro256PlusPlus) -> DVec2 {
-    let place = DVec2::new(random.random(), random.random());
-    let side = samples.isqrt();
-    if sample >= side * side {
-        return place;
-    }
-    (DVec2::new((sample % side) as f64, (sample / side) as f64) + place) / side as f64
 }
 
 /// Sums over the samples of a pixel.

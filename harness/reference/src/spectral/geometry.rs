@@ -2,6 +2,7 @@
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
+use super::hit::{Hit, Place};
 use super::matte::Mattes;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
@@ -16,24 +17,6 @@ pub enum Geometry {
     Planes,
     /// All bodies by their triangles.
     Triangles,
-}
-
-/// Intersection of a ray with a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Hit {
-    /// Distance in units of the direction, at least 0 up to rounding.
-    pub(crate) distance: f64,
-    /// Unit normal, pointing out of the body.
-    pub(crate) normal: DVec3,
-    /// Body and face of the hit.
-    pub(crate) place: Place,
-}
-
-/// A facet or triangle of a body. A ray that starts from it does not meet it again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub(crate) body: usize,
-    pub(crate) face: usize,
 }
 
 /// All bodies of a scene, closed and without overlap.

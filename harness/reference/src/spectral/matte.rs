@@ -1,6 +1,6 @@
 //! Matte bodies: opaque, and of the same radiance seen from all sides.
 
-use super::geometry::{Hit, Place};
+use super::hit::{Hit, Place};
 use glam::DVec3;
 use lapidary_scene::harmonics::{self, COUNT};
 use lapidary_scene::{Environment, Light, Mesh, Object, Scene};

@@ -22,6 +22,7 @@
 mod bvh;
 mod cells;
 pub(crate) mod geometry;
+pub(crate) mod hit;
 mod matte;
 mod trace;
 

@@ -1,6 +1,7 @@
 //! Tracing of rays of one wavelength, split at every surface that they meet.
 
-use super::geometry::{Bodies, Hit, Place};
+use super::geometry::Bodies;
+use super::hit::{Hit, Place};
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;

@@ -4,7 +4,9 @@ use std::f32::consts::TAU;
 
 use glam::{Mat3, Quat, Vec3};
 
-use super::{direction, framed, materials};
+use super::framing::framed;
+use super::materials;
+use crate::camera::direction;
 use crate::cuts::{BrilliantParameters, round_brilliant};
 use crate::{Averaging, Copies, Object, Place, Scene, SceneError};
 

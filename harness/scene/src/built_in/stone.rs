@@ -4,10 +4,14 @@
 use glam::Vec3;
 use std::f32::consts::PI;
 
+use super::framing::framed;
 use super::translucent::{jade, scattering, sized};
-use super::{BUNNY, direction, framed};
+use crate::camera::direction;
 use crate::{Averaging, Density, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 use lapidary_veins::VeinsPattern;
+
+/// The bunny of the Stanford 3D Scanning Repository, decimated and closed.
+pub(super) const BUNNY: &[u8] = include_bytes!("../../../assets/bunny.glb");
 
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");

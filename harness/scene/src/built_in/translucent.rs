@@ -4,7 +4,8 @@
 use glam::{DQuat, DVec3, Vec3};
 use std::f32::consts::PI;
 
-use super::{direction, framed};
+use super::framing::framed;
+use crate::camera::direction;
 use crate::surfaces::{sphere, torus};
 use crate::{Bounds, Camera, Light, Lobe, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 

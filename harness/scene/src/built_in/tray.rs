@@ -3,7 +3,9 @@
 
 use glam::{DMat4, DQuat, DVec3, Vec3};
 
-use super::{direction, framed, materials};
+use super::framing::framed;
+use super::materials;
+use crate::camera::direction;
 use crate::cuts::{BrilliantParameters, StepCutParameters, round_brilliant, step_cut};
 use crate::polyhedron::Polyhedron;
 use crate::surfaces::{rounded_box, sphere, torus};

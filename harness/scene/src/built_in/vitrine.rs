@@ -4,7 +4,8 @@
 use glam::Vec3;
 use std::f32::consts::PI;
 
-use super::{VERTICAL_FOV, materials, stone, translucent};
+use super::framing::VERTICAL_FOV;
+use super::{materials, stone, translucent};
 use crate::{Camera, Density, Dispersion, Light, Material, Medium, Object, Scene, SceneError, gltf};
 use lapidary_veins::VeinsPattern;
 

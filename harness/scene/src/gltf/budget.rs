@@ -3,7 +3,7 @@
 use crate::Texels;
 
 use super::error::GltfError;
-use super::{MAX_IMAGE_BYTES, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
+use super::limits::{MAX_IMAGE_BYTES, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// Memory for an object, its mesh excluded: the struct itself, two names of at most 65 characters,
 /// and six allocations.

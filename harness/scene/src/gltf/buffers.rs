@@ -5,8 +5,8 @@ use std::path::Path;
 
 use ::gltf::json::{Buffer, Root};
 
-use super::MAX_FILE_BYTES;
 use super::error::{GltfError, item};
+use super::limits::MAX_FILE_BYTES;
 use super::uri;
 
 /// Contents of all buffers, each exactly as long as the file states.

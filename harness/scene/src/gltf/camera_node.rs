@@ -4,8 +4,9 @@ use ::gltf::json::Root;
 use glam::{DMat4, DVec3};
 
 use super::error::{GltfError, designation, item};
+use super::limits::MAX_COORDINATE;
 use super::nodes::ShownNode;
-use super::{MAX_COORDINATE, vertices};
+use crate::object::vertices;
 use crate::{Bounds, Camera, Object};
 
 /// Returns the first perspective camera among the visible nodes, or `None`.

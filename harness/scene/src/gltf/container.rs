@@ -1,6 +1,6 @@
 //! The two containers of glTF: plain JSON, and .glb with its chunks.
 
-use super::GltfError;
+use super::error::GltfError;
 
 /// Parts of a file.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
+use super::limits::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// Error in a glTF file, described in one line. Indices count from 0, as in the file itself.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -11,9 +11,9 @@ use glam::{DMat4, DVec3, Vec3};
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_4;
 
-use super::MAX_COORDINATE;
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
+use super::limits::MAX_COORDINATE;
 use super::nodes::ShownNode;
 use crate::Light;
 use crate::light::are_cone_angles;

@@ -6,12 +6,12 @@ use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 
-use super::MAX_COORDINATE;
 use super::accessor::{COLORS, Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, excerpt, item};
 use super::instances::Instances;
+use super::limits::MAX_COORDINATE;
 use super::material::Materials;
 use super::nodes::ShownNode;
 use crate::copies::Copies;

@@ -4,8 +4,8 @@
 use ::gltf::json::Root;
 use serde_json::{Map, Value};
 
-use super::KNOWN_EXTENSIONS;
 use super::error::{self, GltfError};
+use super::limits::KNOWN_EXTENSIONS;
 
 /// Extensions of images, animations and descriptions: nothing that is drawn here needs them. A
 /// texture in another format than PNG and JPEG is replaced by its factor.

@@ -11,10 +11,11 @@ use serde_json::{Map, Value};
 
 use super::error::excerpt;
 use super::lacking::{Lacking, User};
+use super::limits::KNOWN_EXTENSIONS;
 use super::material::{Known, Materials, extensions};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
-use super::{KNOWN_EXTENSIONS, extras, instances, light_node, not_drawn};
+use super::{extras, instances, light_node, not_drawn};
 use crate::{Material, TextureSlot};
 
 /// Lists all unsupported features of the file. Its references are known to be valid.

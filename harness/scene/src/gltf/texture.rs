@@ -17,12 +17,12 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 use serde_json::{Map, Value};
 
-use super::MAX_FILE_BYTES;
 use super::budget::ImageBudget;
 use super::buffers::Buffers;
 use super::decode::{Decoded, decode};
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
+use super::limits::MAX_FILE_BYTES;
 use super::uri;
 use crate::{Texels, Texture, TextureSlot, TextureTransform, Wrap};
 

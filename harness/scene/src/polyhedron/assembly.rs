@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec3, DVec4};
 use lapidary_convex_walk::facet_corners;
 
-use super::{Plane, PolyhedronError};
+use super::error::PolyhedronError;
+use super::plane::Plane;
 
 /// Distance, relative to the largest plane distance, below which two corners count as one. Solving
 /// three planes in f64 loses at most 1e-16/[`PARALLEL`]; the facets of real cuts are larger than

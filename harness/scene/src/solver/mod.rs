@@ -5,7 +5,7 @@ mod method;
 mod reflectance;
 
 pub use method::{Method, Stencil, UnknownMethod};
-pub use reflectance::{REFLECTANCES, Reflectance};
+pub use reflectance::{Format, REFLECTANCES, Reflectance};
 
 use std::fmt;
 use std::str::FromStr;
@@ -24,17 +24,6 @@ const LIMITED: &str = "diffusion-limited";
 /// The number of voxels along an edge is a multiple of this, because the passes over voxels work in
 /// blocks that divide it along any axis.
 pub const MULTIPLE: u32 = 8;
-
-/// Texel format of a lookup table's texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// 8 bits per channel, as in the paper.
-    Rgba8,
-    /// Half-precision floats.
-    Rgba16Float,
-    /// Single-precision floats; its one channel is looked up once for each channel of the material.
-    R32Float,
-}
 
 /// How paths of light through bodies are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,15 @@
 //! How a scattering body reflects light: the rungs of the curvature-dependent reflectance function.
 
-use super::Format;
+/// Texel format of a lookup table's texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits per channel, as in the paper.
+    Rgba8,
+    /// Half-precision floats.
+    Rgba16Float,
+    /// Single-precision floats; its one channel is looked up once for each channel of the material.
+    R32Float,
+}
 
 /// A rung of the ladder, from cheap to exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

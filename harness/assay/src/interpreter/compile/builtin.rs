@@ -4,7 +4,7 @@
 use super::Compiler;
 use crate::interpreter::Stopped;
 use crate::interpreter::code::{Bound, Float, Op, Register};
-use crate::interpreter::machine::Site;
+use crate::interpreter::site::Site;
 use naga::{BinaryOperator, MathFunction as Fun, ScalarKind};
 
 impl Compiler<'_> {

@@ -5,9 +5,9 @@ mod builtin;
 mod chain;
 mod value;
 
-use super::Stopped;
 use super::code::{Code, Float, Label, Op, Register};
-use super::machine::Site;
+use super::site::Site;
+use super::stopped::Stopped;
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
     BinaryOperator, Block, Expression, Function, Handle, Module, RelationalFunction, ScalarKind, Statement,

@@ -3,7 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
-use super::{Chart, Sheet, Surface};
+use super::chart::Chart;
+use super::sheet::Sheet;
+use super::surface::Surface;
 
 /// For each vertex, the other ends of its edges and the edges' lengths.
 type Edges = Vec<Vec<(usize, f64)>>;

@@ -1,6 +1,5 @@
 //! Sums over samples, and the pictures that they estimate.
 
-use super::Rendering;
 use glam::DVec3;
 
 /// Sums over independent samples of one pixel.
@@ -28,6 +27,27 @@ impl Sums {
         // Rounding may make the difference slightly negative.
         (self.squares / count - mean * mean).max(DVec3::ZERO) / (count - 1.0)
     }
+}
+
+/// A rendered image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendering {
+    /// Linear radiance and coverage, row by row from the top: means over a pixel, so that its
+    /// uncovered part counts as black.
+    pub linear: Vec<[f32; 4]>,
+    /// Standard error of each pixel's red, green and blue.
+    ///
+    /// From the eye, it is computed as for independent samples. Since they are spread evenly over
+    /// the pixel, the true error is no greater, and less where the pixel's brightness varies. From
+    /// the lights, it is computed from the spread of 64 batches. Errors of walks from both ends are
+    /// added as independent.
+    pub standard_error: Vec<[f32; 3]>,
+    /// Number of walks that met a body.
+    pub walks: u64,
+    /// Number of scatterings of all walks together.
+    pub scatterings: u64,
+    /// Number of walks that slipped through a surface by rounding and were followed no further.
+    pub lost: u64,
 }
 
 /// An estimated picture, row by row.

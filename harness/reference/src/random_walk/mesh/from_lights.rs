@@ -6,8 +6,9 @@
 mod emission;
 
 use super::estimate::{Estimate, Sums};
+use super::pass::{Pass, stratum};
 use super::walk::{Beginnings, Matter, Ray};
-use super::{Pass, generator, stratum};
+use crate::random_walk::generator;
 use emission::Emission;
 use glam::DVec3;
 use lapidary_scene::view::View;

@@ -4,16 +4,17 @@
 
 mod follow;
 mod refracted;
+mod structure;
 
-use super::Boundary;
-use crate::spectral::geometry::{Bodies, Geometry, Hit, Place};
-use follow::Structure;
+use super::boundary::Boundary;
+use crate::spectral::geometry::{Bodies, Geometry};
+use crate::spectral::hit::{Hit, Place};
 use glam::DVec3;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::view::{Sight, View};
 use lapidary_scene::{Environment, Light, Medium, Object, Scene};
-use rand::rngs::Xoshiro256PlusPlus;
 use refracted::{Facing, Source};
+use structure::Structure;
 
 /// A walk whose strongest channel has less left than this continues with the probability that
 /// compensates for its gain. This constant and the next were chosen for the least product of time
@@ -172,28 +173,6 @@ impl<'scene> Matter<'scene> {
         let leaves = |body: usize| self.bodies.leave_body(point, DVec3::Z, body, None, f64::INFINITY);
         // Bodies do not overlap: a ray from inside leaves before it enters.
         (0..self.coefficients.len()).any(|body| leaves(body).is_some_and(|hit| hit.distance < front))
-    }
-
-    /// Follows a ray from the eye that meets a body at `hit`.
-    pub(super) fn walk(&self, ray: Ray, hit: Hit, beginnings: Beginnings, random: &mut Xoshiro256PlusPlus) -> Outcome {
-        let mut radiance = DVec3::ZERO;
-        let targets = Targets::Lights(&self.lights);
-        let outcome = self.follow(targets, ray, hit, beginnings, random, &mut |_, value| radiance += value);
-        Outcome { radiance: radiance + outcome.radiance, ..outcome }
-    }
-
-    /// Follows light along a ray that meets a body at `hit`; `deposit` receives a pixel and the
-    /// light that the eye sees there.
-    pub(super) fn walk_of_light(
-        &self,
-        eye: &View,
-        ray: Ray,
-        hit: Hit,
-        beginnings: Beginnings,
-        random: &mut Xoshiro256PlusPlus,
-        mut deposit: impl FnMut([u32; 2], DVec3),
-    ) -> Outcome {
-        self.follow(Targets::Eye(eye), ray, hit, beginnings, random, &mut deposit)
     }
 
     /// Whether a point lies within the bounds of all bodies. Written so that it is false for NaN

@@ -9,17 +9,14 @@
 //! reflectance. A straight ray from a collision does not find a light behind such a boundary: the
 //! paths with one refraction are computed instead. The environment is found by walks that leave.
 
-use super::super::Boundary;
 use super::refracted::{Facing, Path};
 use super::{Beginnings, Coefficients, Matter, Outcome, Ray, SURE, Standstill, Targets, WEAK, channel, weighted};
-use crate::random_walk::isotropic;
-use crate::spectral::geometry::{Hit, Place};
-use glam::{DVec2, DVec3};
-use lapidary_random_walk::oracle;
-use lapidary_scene::{Density, Object};
+use crate::spectral::hit::{Hit, Place};
+use glam::DVec3;
+use lapidary_scene::Density;
+use lapidary_scene::view::View;
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
-use std::f64::consts::{PI, TAU};
 
 /// Largest number of surfaces met between two collisions; a walk that meets more is trapped.
 const MOST_REFLECTIONS: u32 = 10_000;
@@ -28,77 +25,6 @@ const NEARER: f64 = 1e-9;
 /// A transmittance below this continues with the probability [`GOES_ON`].
 const FAINT: f64 = 0.02;
 const GOES_ON: f64 = 0.25;
-
-/// Properties of a medium besides its coefficients.
-#[derive(Clone, Debug)]
-pub(super) struct Structure {
-    anisotropy: f64,
-    density: Density,
-    /// Least and greatest density.
-    least: f64,
-    most: f64,
-    /// Refractive index relative to the surroundings of all bodies; 1 if the boundary is matched.
-    index: f64,
-}
-
-impl Structure {
-    /// Returns `None` if the object has no medium.
-    pub(super) fn new(object: &Object, boundary: Boundary) -> Option<Self> {
-        let medium = object.material.medium.as_ref()?;
-        Some(Self {
-            anisotropy: medium.anisotropy.into(),
-            density: medium.density.clone(),
-            least: medium.density.least().into(),
-            most: medium.density.most().into(),
-            index: match boundary {
-                Boundary::Matched => 1.0,
-                Boundary::Dielectric => object.material.ior.into(),
-            },
-        })
-    }
-
-    /// Refractive index relative to the surroundings of all bodies.
-    pub(super) fn index(&self) -> f64 {
-        self.index
-    }
-
-    /// Whether light crosses the boundary unchanged.
-    pub(super) fn is_matched(&self) -> bool {
-        self.index == 1.0
-    }
-
-    /// Density divided by the greatest density.
-    fn share(&self, position: DVec3) -> f64 {
-        if self.most > 0.0 { f64::from(self.density.at(position.as_vec3())) / self.most } else { 0.0 }
-    }
-
-    /// Samples a direction after a scattering.
-    fn scattered(&self, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
-        if self.anisotropy == 0.0 {
-            return isotropic(random);
-        }
-        let DVec2 { x: cosine, y: sine } = oracle::deflection(random.random(), self.anisotropy);
-        let (across, along) = (TAU * random.random::<f64>()).sin_cos();
-        let (a, b) = direction.any_orthonormal_pair();
-        (cosine * direction + sine * (along * a + across * b)).normalize()
-    }
-
-    /// Phase function for light deflected by an angle of this cosine.
-    fn phase(&self, cosine: f64) -> f64 {
-        if self.anisotropy == 0.0 { 0.25 / PI } else { oracle::phase(cosine, self.anisotropy) }
-    }
-
-    /// Refracts or reflects a direction at the boundary, whose `normal` is on the side that it
-    /// comes from; returns whether it crosses to the other side.
-    fn crosses(&self, direction: &mut DVec3, normal: DVec3, index: f64, random: &mut Xoshiro256PlusPlus) -> bool {
-        if self.is_matched() {
-            return true;
-        }
-        let crossing = oracle::boundary(*direction, normal, index, random.random());
-        *direction = crossing.direction.normalize();
-        crossing.crosses
-    }
-}
 
 /// Where a ray outside all bodies arrives.
 enum Arrival {
@@ -110,6 +36,34 @@ enum Arrival {
 }
 
 impl Matter<'_> {
+    /// Follows a ray from the eye that meets a body at `hit`.
+    pub(in crate::random_walk::mesh) fn walk(
+        &self,
+        ray: Ray,
+        hit: Hit,
+        beginnings: Beginnings,
+        random: &mut Xoshiro256PlusPlus,
+    ) -> Outcome {
+        let mut radiance = DVec3::ZERO;
+        let targets = Targets::Lights(&self.lights);
+        let outcome = self.follow(targets, ray, hit, beginnings, random, &mut |_, value| radiance += value);
+        Outcome { radiance: radiance + outcome.radiance, ..outcome }
+    }
+
+    /// Follows light along a ray that meets a body at `hit`; `deposit` receives a pixel and the
+    /// light that the eye sees there.
+    pub(in crate::random_walk::mesh) fn walk_of_light(
+        &self,
+        eye: &View,
+        ray: Ray,
+        hit: Hit,
+        beginnings: Beginnings,
+        random: &mut Xoshiro256PlusPlus,
+        mut deposit: impl FnMut([u32; 2], DVec3),
+    ) -> Outcome {
+        self.follow(Targets::Eye(eye), ray, hit, beginnings, random, &mut deposit)
+    }
+
     /// Follows a ray that meets a body at `hit`, and connects each scattering with the targets. A
     /// walk that does not count, by its beginning, ends before its first scattering.
     ///
@@ -118,7 +72,7 @@ impl Matter<'_> {
     /// own density over the mean density of the choice (the balance heuristic: Chiang, Kutz and
     /// Burley, 2016, "Practical and Controllable Subsurface Scattering for Production Path
     /// Tracing"). So no channel ever has more than the three had together at the start.
-    pub(super) fn follow(
+    fn follow(
         &self,
         targets: Targets<'_>,
         mut ray: Ray,
@@ -157,7 +111,7 @@ impl Matter<'_> {
                     if standstill.holds(ray.position) {
                         break 'bodies;
                     }
-                    if structure.crosses(&mut ray.direction, -out.normal, structure.index.recip(), random) {
+                    if structure.crosses(&mut ray.direction, -out.normal, structure.index().recip(), random) {
                         let next = self.bodies.enter(ray.position, ray.direction, Some(out.place));
                         arrival = self.arrive(&mut ray, next, &mut surfaces, random);
                         continue 'bodies;
@@ -220,7 +174,7 @@ impl Matter<'_> {
             *surfaces += 1;
             ray.position += hit.distance * ray.direction;
             let structure = &self.structures[hit.place.body];
-            if structure.crosses(&mut ray.direction, hit.normal, structure.index, random) {
+            if structure.crosses(&mut ray.direction, hit.normal, structure.index(), random) {
                 return Arrival::Body(hit.place);
             }
             next = self.bodies.enter(ray.position, ray.direction, Some(hit.place));

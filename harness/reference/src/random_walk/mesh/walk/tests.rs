@@ -6,6 +6,7 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
 use lapidary_scene::{Averaging, Camera, Material, Mesh};
 use rand::RngExt as _;
+use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

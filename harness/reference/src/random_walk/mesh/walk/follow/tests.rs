@@ -1,11 +1,13 @@
 use super::super::tests::{cuboid, estimate, grey, h, scene, seen, sun};
 use super::*;
-use crate::random_walk::{generator, half_space, in_disc};
+use crate::random_walk::mesh::Boundary;
+use crate::random_walk::{generator, half_space, in_disc, isotropic};
 use glam::{UVec3, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
 use lapidary_scene::{DensityGrid, Environment, Light, Medium, Mesh};
 use lapidary_veins::VeinsPattern;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 fn veins() -> Density {
