@@ -1,4 +1,4 @@
-// absorption: the share of light that a coloured medium lets through along a path inside, by the law of Beer and Lambert.
+// absorption: the share of light that a coloured medium lets through along a path inside, by Beer and Lambert's law.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 91fcb6730d8bd0b4
 // Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles

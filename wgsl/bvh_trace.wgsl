@@ -1,4 +1,4 @@
-// bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
+// bvh_trace: rays inside a closed mesh of any shape, through a bounding volume hierarchy to triangles, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 00050e3d22e34717
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
@@ -116,8 +116,11 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // Domain: |direction| = 1; rows of an invertible matrix, with components up to 1e6; the transformed
 //   direction at least 1e-6 long; positions up to 1e12.
 // Outside: finite while the direction is not turned into 0.
-// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
-fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f) -> BvhTraceObjectRay {
+// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward;
+//   portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
+fn bvh_trace_to_object(
+    origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f
+) -> BvhTraceObjectRay {
     let offset = origin - place;
     let turned = vec3f(dot(row_x, direction), dot(row_y, direction), dot(row_z, direction));
     let size = max(abs(turned.x), max(abs(turned.y), abs(turned.z)));
@@ -139,7 +142,8 @@ fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec
 //   bvh_trace_to_object transforms a ray from world space.
 // Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction
 //   divides by 0.
-// Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
+// Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp;
+//   portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
     let toward = select(vec3f(-1.0f), vec3f(1.0f), direction >= vec3f(0.0f));
     let size = abs(direction);
@@ -216,7 +220,8 @@ fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> 
 // Units: those of the positions.
 // Domain: limit in [0, 1e37].
 // Outside: negative: nothing will be met.
-// Accuracy: lavapipe distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp; portable distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp
+// Accuracy: lavapipe distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp;
+//   portable distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp
 fn bvh_trace_start(limit: f32) -> BvhTraceHit {
     return BvhTraceHit(limit, vec2f(0.0f), BVH_TRACE_NONE);
 }
@@ -251,7 +256,9 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 // Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in
 //   the frame of the ray need not: its neighbours, of which it is an edge there, do. Of thin ones
 //   none is refused that the ray meets, but the point in it is less sure.
-// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward, triangle 6 backward; portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
+// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward,
+//   triangle 6 backward;
+//   portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -275,7 +282,11 @@ fn bvh_trace_triangle(
     let on_qr = select(q.xy, r.xy, squared.z < squared.y);
     let on_rp = select(r.xy, p.xy, squared.x < squared.z);
     let on_pq = select(p.xy, q.xy, squared.y < squared.x);
-    let spanned = vec3f(on_qr.x * qr.y - on_qr.y * qr.x, on_rp.x * rp.y - on_rp.y * rp.x, on_pq.x * pq.y - on_pq.y * pq.x);
+    let spanned = vec3f(
+        on_qr.x * qr.y - on_qr.y * qr.x,
+        on_rp.x * rp.y - on_rp.y * rp.x,
+        on_pq.x * pq.y - on_pq.y * pq.x
+    );
     let area = sign(ray.shear.z) * spanned;
     if (triangle == left || area.x + area.y + area.z <= 0.0f) {
         return hit;

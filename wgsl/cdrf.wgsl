@@ -1,4 +1,4 @@
-// cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
+// cdrf: curvature-dependent reflectance: diffuse light's clamped cosine, blurred as a curved, translucent surface does.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 61587a1906ed571b
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
@@ -89,7 +89,8 @@ struct CdrfDrift {
 // Domain: any mean_free_path, negative values count as 0; any curvature; products count as at most 1 in
 //   magnitude, a radius of one mean free path; any gamma, clamped to [0, 1].
 // Outside: nothing.
-// Accuracy: lavapipe sigma 2 ulp, shift 1.1e-6 rel, share 6e-7 rel; portable sigma 4 ulp, shift 2.1e-6 rel, share 1.2e-6 rel
+// Accuracy: lavapipe sigma 2 ulp, shift 1.1e-6 rel, share 6e-7 rel;
+//   portable sigma 4 ulp, shift 2.1e-6 rel, share 1.2e-6 rel
 fn cdrf_drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
     let turn = clamp(max(cdrf_finite(mean_free_path), 0.0f) * cdrf_finite(curvature), -1.0f, 1.0f);
     let g = clamp(gamma, 0.0f, 1.0f);
@@ -293,7 +294,8 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     // |c| / sigma, finite for sigma = 0. The bump ends where its root reaches 0, about six standard
     // deviations away, and is 0 beyond.
     let u = abs(c) / (s + 1e-7f);
-    let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
+    let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f
+        + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
     let first = -0.063232761f + u * (0.033584461f + u * (0.0047414034f - u * 0.037048171f));
     let second = -0.014675331f + u * (0.19972939f - u * 0.2402912f);
     let root = still + v * (first + v * second);
@@ -528,7 +530,8 @@ struct CdrfTexels {
 // Units: texels.
 // Domain: coordinates in [0, 1]; size from 1 to 16384.
 // Outside: coordinates are clamped to [0, 1].
-// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward; portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward
+// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward;
+//   portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward
 fn cdrf_texels(coordinates: vec2f, size: vec2u) -> CdrfTexels {
     let at = clamp(coordinates, vec2f(0.0f), vec2f(1.0f)) * (vec2f(size) - 1.0f);
     let lower = vec2u(at);

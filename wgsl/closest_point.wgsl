@@ -1,4 +1,4 @@
-// closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
+// closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash b9f256d751527243
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected

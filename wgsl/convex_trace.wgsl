@@ -1,4 +1,4 @@
-// convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
+// convex_trace: where a ray in a convex stone meets its surface, from facet planes. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 3ef8a9d15ff63494
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon;
@@ -57,8 +57,11 @@ fn convex_trace_start(limit: f32) -> ConvexTraceHit {
 //   stone, up to rounding; slopes of 0 or at least 1e-20; `hit` from convex_trace_start or from
 //   this function.
 // Outside: finite for sizes up to 1e18; for other directions distances in units of their length.
-// Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward; portable distance 4 ulp + 4 backward, face 4 backward
-fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32, left: u32) -> ConvexTraceHit {
+// Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward;
+//   portable distance 4 ulp + 4 backward, face 4 backward
+fn convex_trace_step(
+    hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32, left: u32
+) -> ConvexTraceHit {
     let height = plane.w - dot(plane.xyz, position);
     let slope = dot(plane.xyz, direction);
     // The quotient is ignored if the slope is 0.

@@ -113,7 +113,10 @@ struct CurvatureFrame {
 // Domain: p_x and p_y of curvature_pixel: with a largest component in [1, 2), or degenerate in
 //   [1e-7, 1), or 0.
 // Outside: `first` and `second` shrink for shorter ones.
-// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, normal 7 ulp + 1e-9 abs + 4 backward, width 3 ulp, lean 4 ulp + 4 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward; portable first 17 ulp, second 42 ulp + 8 backward, normal 31 ulp + 1e-9 abs + 8 backward, width 12 ulp, lean 18 ulp + 8 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
+// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, normal 7 ulp + 1e-9 abs + 4 backward,
+//   width 3 ulp, lean 4 ulp + 4 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward;
+//   portable first 17 ulp, second 42 ulp + 8 backward, normal 31 ulp + 1e-9 abs + 8 backward, width 12 ulp,
+//   lean 18 ulp + 8 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
 fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     let squared_x = dot(p_x, p_x);
     let width = sqrt(squared_x);

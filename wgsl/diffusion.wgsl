@@ -1,4 +1,4 @@
-// diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
+// diffusion: light that diffuses in matter on a grid: equation, source, what the eye sees, what surface cells miss.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 21e62c931c059c92
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
@@ -298,7 +298,9 @@ fn diffusion_tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32, mi
 //   milne, clamped to [0.5, 20]; any depth and gap, clamped to [0, 1e6]; any angle, clamped to [0, 1.25].
 // Outside: nothing.
 // Accuracy: lavapipe 1.1e-5 abs; portable 2.1e-5 abs
-fn diffusion_local(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
+fn diffusion_local(
+    cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32
+) -> f32 {
     let m = clamp(cosine_eye, DIFFUSION_GRAZING, 1.0f);
     let c = clamp(cosine_light, DIFFUSION_GRAZING, 1.0f);
     let exact = clamp(law, 0.0f, 4.0f);

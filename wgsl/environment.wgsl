@@ -1,4 +1,4 @@
-// environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
+// environment: coordinates and texels of a latitude-longitude radiance map, and a studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash be4a580c652f3a11
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the
@@ -119,7 +119,8 @@ struct EnvironmentTexels {
 // Units: texels; texel i covers [i, i + 1] / size, and its value is at its centre.
 // Domain: u in [0, 4], v in [0, 1]; size from 1 to 16384.
 // Outside: u of either sign repeats, less exactly below 0, as long as it is finite; v is clamped.
-// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward; portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward; order kept
+// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward;
+//   portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward; order kept
 fn environment_texels(uv: vec2f, size: vec2u) -> EnvironmentTexels {
     // The value of a texel is at its centre, half a texel from its edge.
     let column = (uv.x - floor(uv.x)) * f32(size.x) - 0.5f;
@@ -154,7 +155,8 @@ struct EnvironmentHarmonics {
 // Units: none.
 // Domain: |direction| = 1.
 // Outside: finite for components up to 1e9.
-// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs; portable zeroth 1 ulp, first 2 ulp, second 6e-7 abs, fourth 3e-6 abs
+// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs;
+//   portable zeroth 1 ulp, first 2 ulp, second 6e-7 abs, fourth 3e-6 abs
 fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
     let x = direction.x;
     let y = direction.y;
@@ -267,5 +269,6 @@ fn environment_studio(direction: vec3f) -> vec3f {
         vec3f(0.0f, -3.0f, -4.0f) / 5.0f, vec3f(0.0f, 4.0f, -3.0f) / 5.0f, vec2f(0.60f, 0.20f), 0.10f);
     let front_card = vec3f(2.0f, 1.85f, 1.7f) * environment_softbox(direction,
         vec3f(0.0f, -5.0f, 12.0f) / 13.0f, vec3f(0.0f, 12.0f, 5.0f) / 13.0f, vec2f(0.50f, 0.14f), 0.10f);
-    return surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card;
+    return surround + key + overhead + cool_strip + warm_strip
+        + back_spark + front_spark + low_spark + back_card + front_card;
 }

@@ -1,4 +1,4 @@
-// half_space: the law by which light enters and leaves a half space of scattering matter: Chandrasekhar's diffuse reflection, with a dielectric boundary if there is one.
+// half_space: the law by which light enters and leaves a half space of scattering matter, with or without a boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash d7ac78b53da301dc
 // Source: Chandrasekhar, "Radiative Transfer", 1960, sections 33 to 36, for the law and the
@@ -269,7 +269,9 @@ fn half_space_inside(cosine_eye: f32, cosine_light: f32, gamma: f32, edge: f32, 
 //   for half_space_inside.
 // Outside: nothing.
 // Accuracy: lavapipe 2.6e-4 rel; portable 2.7e-4 rel
-fn half_space_dielectric(cosine_eye: f32, cosine_light: f32, gamma: f32, relative_index: f32, edge: f32, gain: f32) -> f32 {
+fn half_space_dielectric(
+    cosine_eye: f32, cosine_light: f32, gamma: f32, relative_index: f32, edge: f32, gain: f32
+) -> f32 {
     let n = clamp(relative_index, 1.0f, HALF_SPACE_DENSEST);
     let eye = half_space_refract(cosine_eye, n);
     let light = half_space_refract(cosine_light, n);

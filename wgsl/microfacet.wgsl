@@ -1,4 +1,4 @@
-// microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
+// microfacet: a rough dielectric's highlight: Cook and Torrance's reflectance, Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 6100eccd79f2cde0
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough

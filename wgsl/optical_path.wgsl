@@ -1,4 +1,4 @@
-// optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
+// optical_path: paths of least optical depth from the light to every voxel of a body, and the light along them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 0339667324ad2b29
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic

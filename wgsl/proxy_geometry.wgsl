@@ -67,8 +67,11 @@ fn proxy_geometry_image(centre: vec3f, position: vec3f) -> vec3f {
 // Units: lengths in, lengths out.
 // Domain: any, up to 1e37.
 // Outside: overflows beyond.
-// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
-fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: vec3f, position_third: vec3f) -> ProxyGeometryPlane {
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp;
+//   portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+fn proxy_geometry_plane(
+    centre: vec3f, position_first: vec3f, position_second: vec3f, position_third: vec3f
+) -> ProxyGeometryPlane {
     return ProxyGeometryPlane(
         proxy_geometry_image(centre, position_first),
         position_first - position_second,
@@ -125,7 +128,8 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
 // Units: lengths; `direction` and `normal` are unit vectors.
 // Domain: |direction| = |normal| = 1, positions up to 1e30.
 // Outside: for positions beyond, overflows.
-// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward; portable point 8 ulp + 7 backward, distance 9 ulp + 7 backward, hit 7 backward
+// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward;
+//   portable point 8 ulp + 7 backward, distance 9 ulp + 7 backward, hit 7 backward
 fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
     let slope = dot(normal, direction);
     let height = dot(normal, plane_point - position);
@@ -189,7 +193,9 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
 // Units: lengths.
 // Domain: size of the triangle in [1e-27, 1e27], at most 100 steps.
 // Outside: exact steps up to 2^24; overflows beyond 1e37.
-// Accuracy: lavapipe vertex_first 2 ulp + 2 backward, vertex_second 2 ulp + 2 backward, vertex_third 2 ulp + 2 backward; portable vertex_first 3 ulp + 4 backward, vertex_second 3 ulp + 4 backward, vertex_third 3 ulp + 4 backward
+// Accuracy: lavapipe vertex_first 2 ulp + 2 backward, vertex_second 2 ulp + 2 backward,
+//   vertex_third 2 ulp + 2 backward;
+//   portable vertex_first 3 ulp + 4 backward, vertex_second 3 ulp + 4 backward, vertex_third 3 ulp + 4 backward
 fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.
     let corner = vec2f(cell.steps) + select(0.0f, 1.0f, cell.turned);
@@ -209,7 +215,9 @@ fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> P
 // Domain: |direction| = 1, distance between centroid and centre 0 or in [1e-30, 1e30].
 // Outside: overflows beyond.
 // Accuracy: lavapipe 6 ulp + 5 backward; portable 10 ulp + 7 backward; order kept
-fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f) -> vec3f {
+fn proxy_geometry_facet_normal(
+    centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f
+) -> vec3f {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0f;
     let size = max(max(abs(to_centre.x), abs(to_centre.y)), abs(to_centre.z));
     if (size < 1.2e-38f) {
@@ -227,7 +235,8 @@ fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second
 // Units: lengths.
 // Domain: any, up to 1e37.
 // Outside: overflows beyond.
-// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp;
+//   portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
 fn proxy_geometry_next_plane(centre: vec3f, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
     return proxy_geometry_plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third);
 }

@@ -1,4 +1,4 @@
-// random_walk: random walks of light in a scattering medium: random numbers, free paths, delta tracking, phase function, boundary.
+// random_walk: walks of light in a scattering medium: random numbers, free paths, tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash b541375428cc2ca8
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
@@ -233,7 +233,8 @@ fn random_walk_isotropic(u: vec2f) -> vec3f {
 // Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4], u in [0,
 //   1). Light always crosses for relative_index = 1.
 // Outside: a normal that faces away from the light counts as grazing: finite, but no unit vector.
-// Accuracy: lavapipe direction 12 ulp + 24 backward, crosses 24 backward; portable direction 24 ulp + 160 backward, crosses 160 backward
+// Accuracy: lavapipe direction 12 ulp + 24 backward, crosses 24 backward;
+//   portable direction 24 ulp + 160 backward, crosses 160 backward
 fn random_walk_boundary(incident: vec3f, normal: vec3f, relative_index: f32, u: f32) -> RandomWalkCrossing {
     // n^2 - 1 in two factors: the difference of two nearby floats is exact, the difference of their
     // squares is not.

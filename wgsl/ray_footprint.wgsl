@@ -1,4 +1,4 @@
-// ray_footprint: which part of a pixel shows what lies beyond the edge of a facet inside a stone, and which neighbours show the same.
+// ray_footprint: the part of a pixel that shows what lies beyond a facet's edge, and the neighbours that show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash e2be3dedb638e648
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
@@ -48,7 +48,9 @@ fn ray_footprint_growth(distance: f32, travelled: f32, relative_index: f32) -> f
 // Outside: finite for offsets and a gap up to 2^30 and other vectors up to 2^10; where one slope is
 //   below 0, so is f.
 // Accuracy: lavapipe 1 ulp + 8 backward; portable 2 ulp + 16 backward
-fn ray_footprint_edge(direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32) -> vec3f {
+fn ray_footprint_edge(
+    direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32
+) -> vec3f {
     let slope = dot(nearest, direction);
     let slope_runner_up = dot(runner_up, direction);
     // Perpendicular to the ray, so that parts of the offsets along it drop out.

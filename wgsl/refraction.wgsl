@@ -57,7 +57,8 @@ fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
 // Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4].
 // Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0):
 //   finite, but not unit.
-// Accuracy: lavapipe direction 88 ulp + 8 backward, total 8 backward; portable direction 148 ulp + 16 backward, total 16 backward
+// Accuracy: lavapipe direction 88 ulp + 8 backward, total 8 backward;
+//   portable direction 148 ulp + 16 backward, total 16 backward
 fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
     let cosine = max(-dot(normal, incident), 0.0f);
     let excess = (relative_index - 1.0f) * (relative_index + 1.0f);

@@ -1,4 +1,4 @@
-// texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
+// texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance in its own texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 990283e867d9d522
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH

@@ -1,4 +1,4 @@
-// absorption: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/absorption.wgsl, and use its structs and functions.
+// absorption: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The coefficient with the built-in logarithm, the obvious way to write it.

@@ -1,4 +1,4 @@
-// bvh_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/bvh_trace.wgsl, and use its structs and functions.
+// bvh_trace: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The usual epsilon, used by bvh_trace_triangle_naive.

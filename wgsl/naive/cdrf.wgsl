@@ -1,4 +1,4 @@
-// cdrf: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/cdrf.wgsl, and use its structs and functions.
+// cdrf: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // cdrf_sigma as the plain product, as printed in the paper.

@@ -1,4 +1,4 @@
-// closest_point: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/closest_point.wgsl, and use its structs and functions.
+// closest_point: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The direction from the built-in `normalize`.
@@ -112,8 +112,11 @@ fn closest_point_centre_literal(
         length(cross(normal_b, normal_c)),
         length(cross(normal_c, normal_a)),
     );
-    let point_a = position_a + normal_a * closest_point_parameters_literal(position_a, normal_a, position_b, normal_b).x;
-    let point_b = position_b + normal_b * closest_point_parameters_literal(position_b, normal_b, position_c, normal_c).x;
-    let point_c = position_c + normal_c * closest_point_parameters_literal(position_c, normal_c, position_a, normal_a).x;
+    let point_a = position_a
+        + normal_a * closest_point_parameters_literal(position_a, normal_a, position_b, normal_b).x;
+    let point_b = position_b
+        + normal_b * closest_point_parameters_literal(position_b, normal_b, position_c, normal_c).x;
+    let point_c = position_c
+        + normal_c * closest_point_parameters_literal(position_c, normal_c, position_a, normal_a).x;
     return (weight.x * point_a + weight.y * point_b + weight.z * point_c) / (weight.x + weight.y + weight.z);
 }

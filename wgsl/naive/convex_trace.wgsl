@@ -1,4 +1,4 @@
-// convex_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/convex_trace.wgsl, and use its structs and functions.
+// convex_trace: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // convex_trace_step in its usual form, with an epsilon to avoid hitting the face that the ray has
@@ -11,7 +11,9 @@
 // Outside: misses facets beside edges, all facets of small stones and those that the ray starts
 //   outside of by rounding; meets the face that was left again, far away, at grazing incidence.
 // Accuracy: naive
-fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32) -> ConvexTraceHit {
+fn convex_trace_step_naive(
+    hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32
+) -> ConvexTraceHit {
     let distance = (plane.w - dot(plane.xyz, position)) / dot(plane.xyz, direction);
     if (distance > 1e-4f && distance < hit.distance) {
         return ConvexTraceHit(distance, face);

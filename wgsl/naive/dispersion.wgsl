@@ -1,4 +1,4 @@
-// dispersion: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/dispersion.wgsl, and use its structs and functions.
+// dispersion: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The derivative of refraction in its usual form from eq. (6), with eta = 1 / n. Kept for

@@ -1,4 +1,4 @@
-// reflective_shadow_map: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/reflective_shadow_map.wgsl, and use its structs and functions.
+// reflective_shadow_map: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The axes in their usual form, by a cross product with the vertical. Kept to show where it fails:
