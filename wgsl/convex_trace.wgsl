@@ -43,19 +43,12 @@ fn convex_trace_start(limit: f32) -> ConvexTraceHit {
     return ConvexTraceHit(min(limit, CONVEX_TRACE_FAR), CONVEX_TRACE_NONE);
 }
 
-// Updates the hit with one plane. The ray meets the plane if it runs towards it, however slowly.
-// For a plane parallel to the ray the slope is 0, or rounding noise, which places the plane beyond
-// all others. The face that the ray has just left is identified by its index: at grazing incidence
-// rounding may turn a ray back towards that face, and no distance distinguishes this from a true
-// hit. If rounding places the start of a ray outside a plane and the ray runs further out, it meets
-// the plane at once, at distance 0, so no ray escapes at an edge or a vertex. At equal distances
-// the earlier hit is kept: in ascending order the lower face wins.
-// Returns: this plane's ConvexTraceHit if the ray meets it at a shorter distance than `hit`,
-//   otherwise `hit`.
+// Updates the hit with one plane, which the ray meets if it runs towards it, however slowly. The face just left
+// is known by its index: no distance tells it from a true hit. At equal distances the earlier hit is kept.
+// Returns: this plane's ConvexTraceHit if the ray meets it at a shorter distance than `hit`, otherwise `hit`.
 // Units: lengths are in units of the length of the ray's direction; `plane.xyz` is a unit vector.
-// Domain: |direction| = |plane.xyz| = 1; sizes and positions in [1e-4, 1e4]; `position` inside the
-//   stone, up to rounding; slopes of 0 or at least 1e-20; `hit` from convex_trace_start or from
-//   this function.
+// Domain: |direction| = |plane.xyz| = 1; sizes and positions in [1e-4, 1e4]; `position` inside the stone, up to
+//   rounding; slopes of 0 or at least 1e-20; `hit` from convex_trace_start or from this function.
 // Outside: finite for sizes up to 1e18; for other directions distances in units of their length.
 // Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward;
 //   portable distance 4 ulp + 4 backward, face 4 backward

@@ -64,8 +64,7 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
     return cdrf_accurate(cos(acos(cosine)), sigma);
 }
 
-// cdrf_texture_coordinates without the half texel: every lookup is shifted towards the middle of
-// the table.
+// cdrf_texture_coordinates without the half texel: lookups shift towards the table's middle.
 // Returns: `coordinates`, unchanged.
 // Units: fractions of the texture.
 // Domain: coordinates in [0, 1].

@@ -59,11 +59,8 @@ fn closest_point_fallback_naive(position_a: vec3f, position_b: vec3f, position_c
 }
 
 // The paper's centre, eq. (4), (5), with eq. (3) corrected: for each vertex, the point of its line
-// closest to the next vertex's line; the three points are averaged with the sines of the angles
-// between the normals as weights. Kept for comparison: as the normals become parallel, weight times
-// parameter tends to a limit that depends on the direction of approach, while the sum of the
-// weights vanishes, so the point runs off to infinity. Only one of each pair's two points counts,
-// so the result depends on the winding.
+// closest to the next vertex's line, averaged with the sines between the normals as weights. As normals
+// become parallel it runs off to infinity, and it depends on the winding: docs/closest_point.md.
 // Returns: o; closest_point_fallback if all three normals are parallel.
 // Units: those of the positions.
 // Domain: unit normals at angles in [0.3, 2.8] from each other.
