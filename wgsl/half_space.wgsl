@@ -236,14 +236,12 @@ fn half_space_gain(gamma: f32, edge: f32) -> f32 {
 }
 
 // The law between directions inside the boundary: index-matched matter, and the light that the boundary
-// has thrown back. The latter factors: the boundary throws back what comes below the edge, and matter
-// lit from all directions below an edge reflects by H(m) times the integral of m' / (m + m') up to it.
-// That integral, over the edge, is 1 - ln(1 + y) / y with y = edge / m, here by Pade's form of order 2 in
-// p = edge / (m + edge).
+// has thrown back. The latter is a product of H(m) (1 - ln(1 + y) / y), with y = edge / m, for both
+// directions: docs/half_space.md.
 // Returns: BRDF between the directions inside; half_space_brdf, to rounding, if the edge is 0.
 // Units: 1/sr; cosines inside, `edge` and `gain` as half_space_edge and half_space_gain return them.
-// Domain: any cosines, clamped to [1e-18, 1]; any gamma, clamped to [0, 1]; any edge, clamped to [0, 0.981];
-//   any gain, clamped to [0, 100].
+// Domain: any cosines, clamped to [1e-18, 1]; any gamma, clamped to [0, 1]; any edge, clamped to [0,
+//   0.981]; any gain, clamped to [0, 100].
 // Outside: nothing.
 // Accuracy: lavapipe 2.6e-4 rel; portable 2.6e-4 rel
 fn half_space_inside(cosine_eye: f32, cosine_light: f32, gamma: f32, edge: f32, gain: f32) -> f32 {
@@ -259,14 +257,13 @@ fn half_space_inside(cosine_eye: f32, cosine_light: f32, gamma: f32, edge: f32, 
     return albedo * both * (0.07957747f / sum + thrown_back);
 }
 
-// The law of matter behind a dielectric boundary, for the light that enters. Multiply it by the shares of
-// light that pass the boundary, (1 - F(eye)) (1 - F(light)), with F by the module fresnel, and add the
-// reflection at the boundary itself.
-// Returns: BRDF without the shares that pass: half_space_inside of the refracted cosines over n^2;
-//   half_space_brdf for an index of 1 and an edge of 0.
+// The law of matter behind a dielectric boundary, for light that enters. Multiply it by the shares that pass the
+// boundary, (1 - F(eye)) (1 - F(light)), with F by the module fresnel, and add the boundary's own reflection.
+// Returns: BRDF without the shares that pass: half_space_inside of the refracted cosines over n^2; half_space_brdf
+//   for an index of 1 and an edge of 0.
 // Units: 1/sr; cosines outside; `relative_index` is n_inside / n_outside.
-// Domain: any cosines, clamped to [1e-18, 1]; any relative_index, clamped to [1, 4]; gamma, edge and gain as
-//   for half_space_inside.
+// Domain: any cosines, clamped to [1e-18, 1]; any relative_index, clamped to [1, 4]; gamma, edge and gain as for
+//   half_space_inside.
 // Outside: nothing.
 // Accuracy: lavapipe 2.6e-4 rel; portable 2.7e-4 rel
 fn half_space_dielectric(
@@ -279,7 +276,7 @@ fn half_space_dielectric(
 }
 
 // How the odds of absorption behind a boundary exceed those by Saunderson's formula, which takes the light
-// that meets the boundary from inside to be diffuse: really more of it is slanted, is thrown back, and
+// that meets the boundary from inside to be diffuse. Really more of it is slanted, is thrown back, and
 // meets matter that reflects slanted light better.
 // Returns: factor in [1, 1.62], accurate to 0.25 %.
 // Units: none.

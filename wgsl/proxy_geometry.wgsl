@@ -79,14 +79,11 @@ fn proxy_geometry_plane(
     );
 }
 
-// Unit normal of a triangle, pointing to the side from which its vertices run counter-clockwise. It
-// is the cross product of the two shortest edges: each is as exact as its own ends, whereas two
-// long edges that differ by a short third one have lost that difference if their common end is far
-// from the origin. The edges are first scaled to size 1, because their cross product and its square
-// leave the range of f32 for triangles of size 1e-10 and of 1e10. One edge is crossed with the
-// difference of the two, which is exact if they are nearly parallel, so slivers keep their digits.
-// Returns: unit normal; zero for a degenerate triangle, that is, if the cross product of the scaled
-//   edges has a square below 1.2e-38.
+// Unit normal of a triangle, to the side from which its vertices run counter-clockwise: the cross
+// product of the two shortest edges, scaled to size 1. One is crossed with the difference of the two,
+// which is exact if they are nearly parallel.
+// Returns: unit normal; zero for a degenerate triangle, where the scaled edges' cross product has a
+//   square below 1.2e-38.
 // Units: lengths in, none out.
 // Domain: edges in [1e-30, 1e30], sine of the angle between the two shortest edges at least 1e-6.
 // Outside: finite; zero or ill-conditioned.
@@ -140,11 +137,10 @@ fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3
     return ProxyGeometryHit(position + distance * direction, distance, true);
 }
 
-// Lattice coordinates of a point of plane P: point = origin + x edge_first + y edge_second. They
-// are computed from cross products, which keep their digits on slivers, where the usual Gram
-// determinant cancels. Everything is scaled by the longest edge to avoid overflow.
-// Returns: the two coordinates; zero for a degenerate triangle
-//   (|edge_first × edge_second| below 2^-18 of the longest edge squared).
+// Lattice coordinates of a point of plane P: point = origin + x edge_first + y edge_second. They come
+// from cross products, which keep their digits on slivers, scaled by the longest edge.
+// Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-18
+//   of the longest edge squared).
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-27, 1e27], distance of the point at most 100 times that size,
 //   sine of the angle times the ratio of the edges at least 1e-4.
@@ -186,9 +182,8 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     return ProxyGeometryCell(vec2i(corner), turned);
 }
 
-// The vertices of a tile, each computed from its own lattice position, so no error accumulates from
-// tile to tile. Tiles share a vertex to the last bit if the device rounds equal expressions alike,
-// and within the bounds below on every device; nothing relies on more.
+// The vertices of a tile, each from its own lattice position, so no error accumulates. Tiles share a vertex to
+// the last bit if the device rounds equal expressions alike, else within the bounds; nothing relies on more.
 // Returns: ProxyGeometryFacet.
 // Units: lengths.
 // Domain: size of the triangle in [1e-27, 1e27], at most 100 steps.

@@ -54,14 +54,13 @@ fn reflective_shadow_map_basis(axis: vec3f) -> ReflectiveShadowMapBasis {
     return ReflectiveShadowMapBasis(right, up);
 }
 
-// The position of a point in a map, in WebGPU's clip coordinates. It is computed from the point's
-// difference from the view's origin, so a scene far from the world's origin has the same map. A
-// matrix that includes the translation would subtract products of large numbers.
+// The position of a point in a map, in WebGPU's clip coordinates, from its difference from the view's
+// origin: a matrix that includes the translation would subtract products of large numbers.
 // Returns: x, y in [-w, w] and z in [0, w] for points that the map covers; w is 1 for a sun and the
 //   depth for a lamp.
 // Units: world units and their quotients.
-// Domain: a view as documented at ReflectiveShadowMapView, extent in [1e-4, 1e4], far - near at
-//   least 1e-4 far; coordinates up to 1e6.
+// Domain: a view as documented at ReflectiveShadowMapView, extent in [1e-4, 1e4], far - near at least
+//   1e-4 far; coordinates up to 1e6.
 // Outside: finite as long as products of coordinates and 1 / extent are.
 // Accuracy: lavapipe 16 ulp + 2 backward; portable 40 ulp + 4 backward
 fn reflective_shadow_map_clip(view: ReflectiveShadowMapView, position: vec3f) -> vec4f {

@@ -15,7 +15,7 @@ fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
 
 // The usual test: the distance along the light by which the seen point is closer to the light than
 // the point itself. Kept to show where it fails: on a plane at grazing incidence, the neighbouring
-// texel is closer by almost its own width, so no single bias works for both the plane and the
+// texel is closer by almost its own width. So no single bias works for both the plane and the
 // shadow of a thin body.
 // Returns: distance along the light.
 // Units: world units.

@@ -407,7 +407,7 @@ fn cdrf_reach(cosine: f32, curvature: f32, spread: f32) -> vec3f {
     return max(angle / max(abs(cdrf_finite(curvature)), 1e-12f), vec3f(1e-6f));
 }
 
-// Reflectance under a light that enters around the point or behind it, as its map says: what enters around is
+// Reflectance under a light that enters around the point or behind it, as its map says. What enters around is
 // spread, as far as no other part of a body has taken it, and what enters behind comes through the body as
 // through a slab. The larger one counts: the spread was fitted to whole spheres, through which light comes as
 // well. Where the light falls on the point itself its way is short, and nearly nothing collides on it. Through

@@ -24,7 +24,7 @@ const TRANSLUCENT_SHADOW_NARROWEST: f32 = 0.667f;
 // The largest width, of the map's. Matter without extinction would blur over all of it.
 const TRANSLUCENT_SHADOW_WIDEST: f32 = 0.03125f;
 // Distance of the filter's taps in largest widths. They lie on a lattice that is fixed to the map of a sun, so
-// that weights change from point to point and taps do not: taps about the point show as bands, and a lattice
+// that weights change from point to point and taps do not. Taps about the point show as bands, and a lattice
 // for each colour as fringes. At 1.25 widths, ripples are below 1 % for the narrowest colour, and a tap comes
 // in at three widths, with 1 % of the largest weight.
 const TRANSLUCENT_SHADOW_SPACING: f32 = 1.25f;
