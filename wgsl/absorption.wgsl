@@ -1,4 +1,4 @@
-// absorption: the share of light that a coloured medium lets through along a path inside, by the law of Beer and Lambert.
+// absorption: the share of light that a coloured medium lets through along a path inside, by Beer and Lambert's law.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 91fcb6730d8bd0b4
 // Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles
@@ -16,11 +16,8 @@ const ABSORPTION_FARTHEST: f32 = 1e30f;
 // is finite.
 const ABSORPTION_NEAREST: f32 = 1e-30f;
 
-// Optical depth of a medium that transmits the share `transmittance`: -ln(transmittance). It does
-// not use `log`, because WGSL allows `log` an absolute error of 2^-21 near 1. In a nearly clear
-// medium the result is about 1 - transmittance and would be lost in that error. With
-// transmittance = m 2^e the logarithm is e ln 2 + 2 artanh(s), where s = (m - 1) / (m + 1); artanh
-// is an odd series. For m about 1, e is 0.
+// Optical depth of a medium that transmits the share `transmittance`: -ln(transmittance). It does not use
+// `log`, whose error near 1 may be as large as the depth of a nearly clear medium: docs/absorption.md.
 // Returns: optical depth in [0, 87.34]; exactly 0 for a transmittance of 1.
 // Units: none.
 // Domain: any transmittance, clamped to [2^-126, 1].
@@ -41,14 +38,12 @@ fn absorption_optical_depth(transmittance: f32) -> f32 {
     return f32(-exponent) * 0.6931472f - 2.0f * s * series;
 }
 
-// Absorption coefficient of a medium that turns white light into `attenuation_color` over the
-// distance `attenuation_distance`.
-// Returns: -ln(attenuation_color) / attenuation_distance per channel, finite and at least 0;
-//   exactly 0 for channels in which the colour is 1.
+// Absorption coefficient of a medium that turns white light into `attenuation_color` over `attenuation_distance`.
+// Returns: -ln(attenuation_color) / attenuation_distance per channel, finite and at least 0; exactly 0 for
+//   channels in which the colour is 1.
 // Units: the inverse of the unit of `attenuation_distance`.
-// Domain: any colour, clamped to [2^-126, 1]; any distance that is not subnormal. Distances that
-//   are 0, negative or at least 1e30 mean that nothing is absorbed, and give 0. Positive distances
-//   below 1e-30 count as 1e-30.
+// Domain: any colour, clamped to [2^-126, 1]; any distance that is not subnormal. Distances that are 0, negative
+//   or at least 1e30 mean that nothing is absorbed, and give 0. Positive distances below 1e-30 count as 1e-30.
 // Outside: subnormal distances count as 1e-30 or as 0.
 // Accuracy: lavapipe 7 ulp; portable 19 ulp
 fn absorption_coefficient(attenuation_color: vec3f, attenuation_distance: f32) -> vec3f {

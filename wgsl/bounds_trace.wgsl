@@ -25,19 +25,14 @@ const BOUNDS_TRACE_NONE: f32 = -1.0f;
 // Slope below which a ray is parallel to a side of the box.
 const BOUNDS_TRACE_PARALLEL: f32 = 1e-20f;
 
-// Distance at which a ray from outside enters the box [-1, 1]^3. It lies between the two planes of a
-// pair from one distance to another, and in the box where it lies between all three pairs. A ray
-// parallel to a pair counts as one that runs inwards, at a slope so small that it arrives far behind
-// the box: nothing is divided by 0, and a ray in the plane of a side meets the box. The height over the
-// plane through which a ray enters is exact, since the start lies beyond that plane.
-// Returns: distance above 0; BOUNDS_TRACE_NONE for a ray that misses the box, starts inside it, or
-//   leaves it behind.
+// Distance at which a ray from outside enters the box [-1, 1]^3: where it lies between both planes of all three pairs.
+// A ray parallel to a pair counts as one that runs inwards, at a slope so small that it arrives far behind the box.
+// Returns: distance above 0; BOUNDS_TRACE_NONE for a ray that misses the box, starts inside it, or leaves it behind.
 // Units: distances are in units of the length of `direction`; the box has half a side of 1.
-// Domain: |direction| in [1e-3, 1e3], coordinates of `position` up to 1e4. With L for the largest of
-//   these, the line passes the edges of the box by at least 2^-10 + 2^-18 L, inside or outside, and
-//   `position` lies at least 2^-10 from its surface, along the axis of L.
-// Outside: finite for positions and directions up to 1e17; a ray in the plane of a side meets the
-//   box; a ray that touches an edge meets it; from a start on a side, BOUNDS_TRACE_NONE.
+// Domain: |direction| in [1e-3, 1e3]; coordinates of `position` up to 1e4, the largest L. The line passes the box's
+//   edges, on either side, by at least 2^-10 + 2^-18 L; `position` is at least 2^-10 from its surface, along L's axis.
+// Outside: finite for positions and directions up to 1e17; a ray in the plane of a side meets the box; a ray that
+//   touches an edge meets it; from a start on a side, BOUNDS_TRACE_NONE.
 // Accuracy: lavapipe 1 ulp; portable 3 ulp
 fn bounds_trace_cuboid(position: vec3f, direction: vec3f) -> f32 {
     let parallel = vec3f(BOUNDS_TRACE_PARALLEL);
@@ -75,18 +70,14 @@ fn bounds_trace_cuboid_normal(point: vec3f) -> vec3f {
     return vec3f(0.0f, 0.0f, toward.z);
 }
 
-// Distance at which a ray from outside enters the unit ball. What decides is how far the line passes
-// the middle, and that is taken from the closest point itself: in b^2 - a c it is the difference of two
-// numbers as large as the squared distance. The nearer root is the product of both over the farther
-// one, which is a sum of two positive terms.
-// Returns: distance above 0; BOUNDS_TRACE_NONE for a ray that misses the ball, starts inside it, or
-//   leaves it behind.
+// Distance at which a ray from outside enters the unit ball, by the line's closest point to the middle. The usual
+// radicand, b^2 - a c, is a difference of two numbers as large as the squared distance.
+// Returns: distance above 0; BOUNDS_TRACE_NONE for a ray that misses the ball, starts inside it, or leaves it behind.
 // Units: distances are in units of the length of `direction`; the ball has a radius of 1.
-// Domain: |direction| in [1e-3, 1e3], coordinates of `position` up to 1e4. The line passes the ball's
-//   silhouette by at least 2^-10 + 2^-18 |position|, inside or outside, and `position` lies at least
-//   2^-10 from its surface.
-// Outside: finite for positions up to 1e9 and directions in [1e-9, 1e9]; a ray that touches the ball
-//   meets it; from a start on it, BOUNDS_TRACE_NONE; with a direction of 0, BOUNDS_TRACE_NONE.
+// Domain: |direction| in [1e-3, 1e3], coordinates of `position` up to 1e4. The line passes the ball's silhouette by
+//   at least 2^-10 + 2^-18 |position|, inside or outside, and `position` lies at least 2^-10 from its surface.
+// Outside: finite for positions up to 1e9 and directions in [1e-9, 1e9]; a ray that touches the ball meets it; from a
+//   start on it, BOUNDS_TRACE_NONE; with a direction of 0, BOUNDS_TRACE_NONE.
 // Accuracy: lavapipe 7 ulp + 2 backward; portable 14 ulp + 4 backward
 fn bounds_trace_ball(position: vec3f, direction: vec3f) -> f32 {
     let outside = dot(position, position) - 1.0f;

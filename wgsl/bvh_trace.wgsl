@@ -1,4 +1,4 @@
-// bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
+// bvh_trace: rays inside a closed mesh of any shape, through a bounding volume hierarchy to triangles, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 00050e3d22e34717
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
@@ -107,17 +107,18 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
     return select(vector, x_or_y, axis < 2u);
 }
 
-// Transforms a ray from world space to the coordinates of a body. The body's position is subtracted
-// first: near the body this difference is exact, whereas a matrix that includes the translation
-// would leave the origin with the rounding error of its world coordinates.
+// Transforms a ray from world space to the coordinates of a body. The body's position is subtracted first: a
+// matrix that includes the translation would round the origin as world coordinates are rounded.
 // Returns: BvhTraceObjectRay; `direction` is a unit vector.
-// Units: lengths; the rows are those of the matrix that rotates and scales differences of world
-//   positions into the body's coordinates, the inverse of the body's own matrix.
-// Domain: |direction| = 1; rows of an invertible matrix, with components up to 1e6; the transformed
-//   direction at least 1e-6 long; positions up to 1e12.
+// Units: lengths; the rows rotate and scale differences of world positions: the inverse of the body's own matrix.
+// Domain: |direction| = 1; rows of an invertible matrix, with components up to 1e6; the transformed direction at
+//   least 1e-6 long; positions up to 1e12.
 // Outside: finite while the direction is not turned into 0.
-// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
-fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f) -> BvhTraceObjectRay {
+// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward;
+//   portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
+fn bvh_trace_to_object(
+    origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f
+) -> BvhTraceObjectRay {
     let offset = origin - place;
     let turned = vec3f(dot(row_x, direction), dot(row_y, direction), dot(row_z, direction));
     let size = max(abs(turned.x), max(abs(turned.y), abs(turned.z)));
@@ -133,13 +134,12 @@ fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec
 // The ray data shared by all box and triangle tests, computed once per ray.
 // Returns: BvhTraceRay.
 // Units: those of the positions; `margin` is a length.
-// Domain: |direction| = 1; lower <= upper, the bounding box of the whole mesh; coordinates up to
-//   1e12, the box at least 1e-10 large. Trace in object space: if the mesh lies at D times its size
-//   from the origin of its coordinates, the margin grows by D 2^-21 of the mesh's size.
-//   bvh_trace_to_object transforms a ray from world space.
-// Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction
-//   divides by 0.
-// Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
+// Domain: |direction| = 1; lower <= upper, the bounding box of the whole mesh; coordinates up to 1e12, the
+//   box at least 1e-10 large. Trace in object space (bvh_trace_to_object): if the mesh lies at D times its
+//   size from the origin of its coordinates, the margin grows by D 2^-21 of the mesh's size.
+// Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction divides by 0.
+// Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp;
+//   portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
     let toward = select(vec3f(-1.0f), vec3f(1.0f), direction >= vec3f(0.0f));
     let size = abs(direction);
@@ -191,15 +191,14 @@ fn bvh_trace_bounds(node: BvhTraceNode) -> BvhTraceExtent {
     );
 }
 
-// Whether a ray meets a box, enlarged by the ray's margin on all sides, at a distance in
-// [0, nearest]. The box of a triangle that the ray hits before `nearest` is never missed, however
-// the distances of its planes are rounded, and even if the box is flat.
-// Returns: BvhTraceBox; without a hit, `entry` is the distance of the last of the planes through
-//   which the ray enters, or 0.
+// Whether a ray meets a box, enlarged by the ray's margin on all sides, at a distance in [0, nearest]. The
+// box of a triangle that the ray hits before `nearest` is never missed, however the distances of its planes
+// are rounded, and even if the box is flat.
+// Returns: BvhTraceBox; without a hit, `entry` is the distance of the last of the planes through which the
+//   ray enters, or 0.
 // Units: those of the positions.
 // Domain: lower <= upper, within the box that the ray was made for; nearest in [0, 1e37].
-// Outside: finite for coordinates up to 1e30; where lower > upper, the box between them less the
-//   margin.
+// Outside: finite for coordinates up to 1e30; where lower > upper, the box between them less the margin.
 // Accuracy: lavapipe entry 2 ulp + 2 backward, hit 2 backward; portable entry 4 ulp + 3 backward, hit 3 backward
 fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> BvhTraceBox {
     let first = (lower - ray.origin - ray.margin) * ray.reciprocal;
@@ -216,7 +215,8 @@ fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> 
 // Units: those of the positions.
 // Domain: limit in [0, 1e37].
 // Outside: negative: nothing will be met.
-// Accuracy: lavapipe distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp; portable distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp
+// Accuracy: lavapipe distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp;
+//   portable distance 0 ulp, barycentrics 0 ulp, triangle 0 ulp
 fn bvh_trace_start(limit: f32) -> BvhTraceHit {
     return BvhTraceHit(limit, vec2f(0.0f), BVH_TRACE_NONE);
 }
@@ -234,24 +234,15 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
     return vec3f(turned.xy - ray.shear.xy * turned.z, turned.z * ray.shear.z);
 }
 
-// The nearer of `hit` and a hit with the triangle a b c, if the ray leaves the solid through it. In
-// the frame of the ray the triangle is flat, and it counts if the origin lies inside it, that is,
-// if no edge has it on its outer side by more than the margin. Sharp corners are cut off at the
-// margin as well. The triangle's plane may lie behind the origin by up to the margin, because an
-// origin computed on one facet can lie outside the next. Edges are computed as differences, so the
-// error of an edge function is relative to its edge, as the margin is.
-// Returns: BvhTraceHit with distance >= 0 and weights in [0, 1]. The weights are those of a point
-//   in the triangle even if the ray passes beside it, and those of the corner if rounding puts the
-//   ray beside a corner. At equal distances the lower index wins, so the order of the triangles
-//   does not matter.
+// The nearer of `hit` and a hit with the triangle a b c, if the ray leaves the solid through it: docs/bvh_trace.md.
+// Returns: BvhTraceHit: distance >= 0, weights in [0, 1] of a point in it; at equal distances the lower index.
 // Units: those of the positions.
-// Domain: a, b, c counter-clockwise seen from outside, within the box that the ray was made for;
-//   coordinates up to 1e12; edges of length 0, or of at least 1e-10 and 1/1000 of the coordinates;
-//   in the frame of the ray, a triangle at least 1/32 as thick as it is long.
-// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in
-//   the frame of the ray need not: its neighbours, of which it is an edge there, do. Of thin ones
-//   none is refused that the ray meets, but the point in it is less sure.
-// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward, triangle 6 backward; portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
+// Domain: a, b, c counter-clockwise from outside, within the ray's box; coordinates up to 1e12; edges 0, or at least
+//   1e-10 and 1/1000 of the coordinates; in the ray's frame, a triangle at least 1/32 as thick as long.
+// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in the ray's frame need
+//   not: its neighbours at that edge do. Of thin ones none that the ray meets is refused, but its point is less sure.
+// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward, triangle 6 backward;
+//   portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -275,7 +266,11 @@ fn bvh_trace_triangle(
     let on_qr = select(q.xy, r.xy, squared.z < squared.y);
     let on_rp = select(r.xy, p.xy, squared.x < squared.z);
     let on_pq = select(p.xy, q.xy, squared.y < squared.x);
-    let spanned = vec3f(on_qr.x * qr.y - on_qr.y * qr.x, on_rp.x * rp.y - on_rp.y * rp.x, on_pq.x * pq.y - on_pq.y * pq.x);
+    let spanned = vec3f(
+        on_qr.x * qr.y - on_qr.y * qr.x,
+        on_rp.x * rp.y - on_rp.y * rp.x,
+        on_pq.x * pq.y - on_pq.y * pq.x
+    );
     let area = sign(ray.shear.z) * spanned;
     if (triangle == left || area.x + area.y + area.z <= 0.0f) {
         return hit;

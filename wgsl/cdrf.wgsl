@@ -1,4 +1,4 @@
-// cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
+// cdrf: curvature-dependent reflectance: diffuse light's clamped cosine, blurred as a curved, translucent surface does.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 61587a1906ed571b
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
@@ -78,18 +78,15 @@ struct CdrfDrift {
     share: f32,
 }
 
-// The drift of light below a curved surface. Light enters along its own direction, so it leaves some
-// mean free path farther from the light: on a ridge the terminator moves into the dark, in a hollow
-// into the light. With the drift apart, the width is proportional to the curvature. Five numbers
-// are fitted to spheres from 3 to 100 mean free paths: docs/cdrf.md.
-// Returns: width, shift and share; 0, 0 and 1, which is Lambert's law, without curvature or if either
-//   of the first two is a NaN.
-// Units: mean_free_path in a length, curvature, negative in a hollow, in its inverse; gamma is
-//   sqrt(1 - albedo).
-// Domain: any mean_free_path, negative values count as 0; any curvature; products count as at most 1 in
-//   magnitude, a radius of one mean free path; any gamma, clamped to [0, 1].
+// The drift of light below a curved surface, which leaves some mean free path farther from the light than it enters.
+// With the drift apart, the width is proportional to the curvature: docs/cdrf.md.
+// Returns: width, shift and share; 0, 0 and 1, Lambert's law, without curvature or if either of the first two is a NaN.
+// Units: mean_free_path in a length, curvature, negative in a hollow, in its inverse; gamma is sqrt(1 - albedo).
+// Domain: any mean_free_path, negative values count as 0; any curvature; products count as at most 1 in magnitude, a
+//   radius of one mean free path; any gamma, clamped to [0, 1].
 // Outside: nothing.
-// Accuracy: lavapipe sigma 2 ulp, shift 1.1e-6 rel, share 6e-7 rel; portable sigma 4 ulp, shift 2.1e-6 rel, share 1.2e-6 rel
+// Accuracy: lavapipe sigma 2 ulp, shift 1.1e-6 rel, share 6e-7 rel;
+//   portable sigma 4 ulp, shift 2.1e-6 rel, share 1.2e-6 rel
 fn cdrf_drift(mean_free_path: f32, curvature: f32, gamma: f32) -> CdrfDrift {
     let turn = clamp(max(cdrf_finite(mean_free_path), 0.0f) * cdrf_finite(curvature), -1.0f, 1.0f);
     let g = clamp(gamma, 0.0f, 1.0f);
@@ -232,13 +229,9 @@ fn cdrf_series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     return 0.31830987f + 0.5f * exp(-0.5f * variance) * c - 0.63661975f * sum;
 }
 
-// The convolution near one terminator, for a Gaussian too narrow to reach the other: the light
-// below x = pi/2 - t, which is u = x / sigma standard deviations away, and the light that the
-// Gaussian carries across the edge.
-//   e^(-sigma^2/2) c P(u) + sigma p(u) K(x, sigma),
-//   K = integral over w in [0, 1] of e^(-sigma^2 (1 - w^2) / 2) cos(x (1 - w))
-// This is exact for a single edge; P and p are the normal distribution and its density. K is
-// expanded to the sixth order.
+// The convolution near one terminator, for a Gaussian too narrow to reach the other: e^(-sigma^2/2) c P(u) +
+// sigma p(u) K. P and p are the normal distribution and its density, u is the terminator's distance in sigmas.
+// It is exact for a single edge, but for K, an integral that is expanded to the sixth order: docs/cdrf.md.
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma at most 0.3, negative values count as 0.
@@ -274,11 +267,9 @@ fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
     return max(cdrf_series(cosine, sigma, 7u), 0.0f);
 }
 
-// The cheap convolution: no angle, no loop, one exponential and one division.
-// It is a damped Lambert's law plus a bump around the terminator. If the Gaussian is narrow, the
-// bump is sigma h(|c| / sigma, sigma^2), where h falls off like a Gaussian and its fourth root is
-// nearly a polynomial. The fit has degrees 5, 3 and 2 and minimises the largest error. If the
-// Gaussian is wide, four terms of the series are summed, whose weights are powers of one another.
+// The cheap convolution: no angle, no loop, one exponential and one division. If the Gaussian is
+// narrow, a fitted bump around the terminator is added to a damped Lambert's law; if it is wide, four
+// terms of the series are summed.
 // Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate, so it is monotonic and continuous
 //   only to 3e-5; max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
@@ -293,7 +284,8 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     // |c| / sigma, finite for sigma = 0. The bump ends where its root reaches 0, about six standard
     // deviations away, and is 0 beyond.
     let u = abs(c) / (s + 1e-7f);
-    let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
+    let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f
+        + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
     let first = -0.063232761f + u * (0.033584461f + u * (0.0047414034f - u * 0.037048171f));
     let second = -0.014675331f + u * (0.19972939f - u * 0.2402912f);
     let root = still + v * (first + v * second);
@@ -329,11 +321,9 @@ fn cdrf_rgb(cosine: f32, sigma0: vec3f, curvature: f32) -> vec3f {
     );
 }
 
-// Sine of an angle of any size, in turns. WGSL guarantees the built-in sine only to an absolute
-// 2^-11, and only within one turn.
-// The nearest whole turn is subtracted and the rest is folded at +-1/4, both without rounding. A
-// polynomial in odd powers follows, fitted by Remez exchange to minimise the relative error of
-// sin(2 pi t), which is 4.2e-8 with rounded coefficients.
+// Sine of an angle of any size, in turns. WGSL's own may be off by 2^-11, and holds only within one
+// turn. The nearest whole turn is subtracted and the rest folded at +-1/4, both without rounding; a
+// polynomial in odd powers follows.
 // Returns: sin(2 pi turns) in [-1, 1], accurate to rounding; exactly 0 at every half turn.
 // Units: turns.
 // Domain: any finite angle.
@@ -398,12 +388,9 @@ fn cdrf_spherical_edge(cosine: f32, sigma: f32) -> f32 {
     return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
-// The energy-conserving choice: the clamped cosine diffused over the sphere of directions instead
-// of a circle. The paper's convolution preserves the mean over a circle; over a sphere of normals
-// it adds light, 4 % at sigma = 0.3, 23 % at 1. Diffusion on the sphere damps the Legendre
-// polynomial of degree l by e^(-l (l + 1) sigma^2 / 2) and preserves the mean.
-// Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; tends to 1/4, the mean over
-//   the sphere.
+// The energy-conserving choice: the clamped cosine diffused over the sphere of directions instead of a circle.
+// This damps the Legendre polynomial of degree l by e^(-l (l + 1) sigma^2 / 2) and preserves the mean.
+// Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; tends to 1/4, the mean over the sphere.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
 // Outside: nothing.
@@ -439,14 +426,9 @@ fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
     return max(sum, 0.0f);
 }
 
-// Response of the spherical form to each degree of the surrounding light. The integral of the form
-// times any radiance is the sum over the degrees of these factors times the radiance's harmonics of
-// that degree in the direction of the normal (Funk and Hecke).
-// A clamped cosine has no part of degree 3 or any higher odd degree. The even degrees from 6 on,
-// pi / 64 or less each, are left out: for one small light this is an error of up to 0.06 at the
-// terminator without blur, and a negligible one from sigma = 0.5 on.
-// Returns: factors of degrees 0, 1, 2 and 4: pi, 2 pi / 3 d, pi / 4 d^3, -pi / 24 d^10 with
-//   d = e^(-sigma^2).
+// Response of the spherical form to each degree of the surrounding light: the factors of the radiance's harmonics
+// of that degree in the direction of the normal. Degree 3 and even degrees from 6 on are left out: docs/cdrf.md.
+// Returns: factors of degrees 0, 1, 2 and 4: pi, 2 pi / 3 d, pi / 4 d^3, -pi / 24 d^10 with d = e^(-sigma^2).
 // Units: steradians; sigma in radians.
 // Domain: any sigma; negative values count as 0.
 // Outside: nothing.
@@ -458,12 +440,9 @@ fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
     return vec4f(3.1415927f, 2.0943952f * decay, 0.7853982f * cube, -0.1308997f * cube * cube * cube * decay);
 }
 
-// Position of a reflectance in the lookup table, as fractions of the distance from the centre of
-// the first texel to the centre of the last.
-// The first coordinate is linear in the cosine. A table of odd width therefore has a texel on the
-// terminator, where the function is not smooth for a small sigma, and its first row is exactly
-// Lambert's law. The second coordinate is sigma / (1 + sigma): it covers all of [0, infinity), with
-// the rows closest together where the function changes most.
+// Position of a reflectance in the lookup table, as fractions of the distance from the centre of the
+// first texel to that of the last. Rows are sigma / (1 + sigma): all of [0, infinity), closest where
+// the function changes most.
 // Returns: coordinates in [0, 1]; 0 for cosine -1 and for sigma 0.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma up to 1e36, negative values count as 0.
@@ -474,13 +453,9 @@ fn cdrf_table_coordinates(cosine: f32, sigma: f32) -> vec2f {
     return vec2f(0.5f + 0.5f * clamp(cosine, -1.0f, 1.0f), min(s / (1.0f + s), 1.0f));
 }
 
-// Value of a texel of the table. One sigma serves all channels of a material: `tint` holds each
-// channel's sigma0 as a share of the largest, and the table is looked up with the sigma of the
-// largest. A tint of (1, 1, 1) makes a single-channel table for any material.
-// Cosine and sigma are computed as quotients of whole numbers, not from coordinates, because 1 - v
-// would cancel in the last rows.
-// Returns: reflectance of each channel in [0, 1]; the last row is for sigma = infinity if tint is
-//   not 0.
+// Value of a texel of the table. `tint` holds each channel's sigma0 as a share of the largest, whose sigma looks
+// the table up. Cosine and sigma are quotients of whole numbers, since 1 - v would cancel in the last rows.
+// Returns: reflectance of each channel in [0, 1]; the last row is for sigma = infinity if tint is not 0.
 // Units: texels, counted from 0.
 // Domain: texel below size; size from 1 to 16384 on each side; tint 0 or in [1e-20, 1].
 // Outside: a texel beyond the last counts as the last. A size below 2 counts as 2.
@@ -528,7 +503,8 @@ struct CdrfTexels {
 // Units: texels.
 // Domain: coordinates in [0, 1]; size from 1 to 16384.
 // Outside: coordinates are clamped to [0, 1].
-// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward; portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward
+// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward;
+//   portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward
 fn cdrf_texels(coordinates: vec2f, size: vec2u) -> CdrfTexels {
     let at = clamp(coordinates, vec2f(0.0f), vec2f(1.0f)) * (vec2f(size) - 1.0f);
     let lower = vec2u(at);

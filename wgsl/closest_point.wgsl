@@ -1,4 +1,4 @@
-// closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
+// closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash b9f256d751527243
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected
@@ -48,15 +48,12 @@ fn closest_point_direction(vector: vec3f) -> vec3f {
     return scaled / length(scaled);
 }
 
-// Parameters of the closest points of two lines, eq. (A.6): point h is origin_h + t_h normal_h. The
-// cross product n_i x n_j is computed as half of (n_i + n_j) x (n_j - n_i). The difference of two
-// nearby normals is exact, so the direction across them keeps its digits at every angle, whereas
-// n_i x n_j has lost them all at 1e-7 rad.
-// Returns: (t_i, t_j); (0, 0) for parallel normals, where every point of one line has a closest
-//   point on the other.
+// Parameters of the closest points of two lines, eq. (A.6): point h is origin_h + t_h normal_h. The cross
+// product n_i x n_j is half of (n_i + n_j) x (n_j - n_i), since the difference of two nearby normals is exact.
+// Returns: (t_i, t_j); (0, 0) for parallel normals, where every point of one line has a closest point on the
+//   other.
 // Units: t is a length if the normals are unit vectors.
-// Domain: unit normals, equal or at an angle of at least 1e-10; |origin_j - origin_i| = 0 or in
-//   [1e-15, 1e15].
+// Domain: unit normals, equal or at an angle of at least 1e-10; |origin_j - origin_i| = 0 or in [1e-15, 1e15].
 // Outside: (0, 0) below an angle of 1e-20; finite wherever |origin_j - origin_i| / angle < 1e37.
 // Accuracy: lavapipe 4.5 ulp + 2 backward; portable 16 ulp + 4 backward
 fn closest_point_parameters(origin_i: vec3f, normal_i: vec3f, origin_j: vec3f, normal_j: vec3f) -> vec2f {
@@ -100,23 +97,14 @@ fn closest_point_fallback(position_a: vec3f, position_b: vec3f, position_c: vec3
     return position_a + size * ((b + c) / 3.0f - depth * area_normal);
 }
 
-// Centre of the proxy sphere: the point o closest to the three normal lines, by least squares with
-// a pull towards the fallback point p, min over o of
-// sum |(I - n n^T)(o - x)|^2 + CLOSEST_POINT_REGULARISATION |o - p|^2.
-// If the lines meet, o is their meeting point; if they are parallel, it lies at the fallback's
-// depth; in between it moves continuously. The smallest eigenvalue of the matrix is about the
-// square of the angle between the normals, and a plain sum of I - n n^T loses it to cancellation.
-// Here each normal is split into its component along their mean direction and a tilt away from it,
-// computed from exact differences. The tilts sum to 0, so across the mean direction the matrix has
-// eigenvalues in [1, 3]. Eliminating that part first leaves one equation for the depth, whose
-// coefficient is a sum of squared tilts.
-// Returns: o; never farther than 32 sqrt(sum of squared distances of p to the lines) from p. The
-//   order of the vertices affects only p, which lies behind the counter-clockwise face.
+// Centre of the proxy sphere: the point o with the least sum |(I - n n^T)(o - x)|^2 +
+// CLOSEST_POINT_REGULARISATION |o - p|^2, p the fallback point. Each normal is split along the mean direction,
+// since a plain sum would cancel: docs/closest_point.md.
+// Returns: o; never farther than 32 sqrt(sum of squared distances of p to the lines) from p. The order of the
+//   vertices affects only p, which lies behind the counter-clockwise face.
 // Units: those of the positions.
-// Domain: unit normals at most 120 degrees apart, positions up to 1e19, the longest edge 0 or at
-//   least 1e-20.
-// Outside: finite for positions up to 1e30. Opposed normals give o too, with up to four thousand
-//   ulp.
+// Domain: unit normals at most 120 degrees apart, positions up to 1e19, the longest edge 0 or at least 1e-20.
+// Outside: finite for positions up to 1e30. Opposed normals give o too, with up to four thousand ulp.
 // Accuracy: lavapipe 207 ulp + 10 backward; portable 768 ulp + 36 backward
 fn closest_point_centre(
     position_a: vec3f,

@@ -1,4 +1,4 @@
-// convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
+// convex_trace: where a ray in a convex stone meets its surface, from facet planes. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 3ef8a9d15ff63494
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon;
@@ -43,22 +43,18 @@ fn convex_trace_start(limit: f32) -> ConvexTraceHit {
     return ConvexTraceHit(min(limit, CONVEX_TRACE_FAR), CONVEX_TRACE_NONE);
 }
 
-// Updates the hit with one plane. The ray meets the plane if it runs towards it, however slowly.
-// For a plane parallel to the ray the slope is 0, or rounding noise, which places the plane beyond
-// all others. The face that the ray has just left is identified by its index: at grazing incidence
-// rounding may turn a ray back towards that face, and no distance distinguishes this from a true
-// hit. If rounding places the start of a ray outside a plane and the ray runs further out, it meets
-// the plane at once, at distance 0, so no ray escapes at an edge or a vertex. At equal distances
-// the earlier hit is kept: in ascending order the lower face wins.
-// Returns: this plane's ConvexTraceHit if the ray meets it at a shorter distance than `hit`,
-//   otherwise `hit`.
+// Updates the hit with one plane, which the ray meets if it runs towards it, however slowly. The face just left
+// is known by its index: no distance tells it from a true hit. At equal distances the earlier hit is kept.
+// Returns: this plane's ConvexTraceHit if the ray meets it at a shorter distance than `hit`, otherwise `hit`.
 // Units: lengths are in units of the length of the ray's direction; `plane.xyz` is a unit vector.
-// Domain: |direction| = |plane.xyz| = 1; sizes and positions in [1e-4, 1e4]; `position` inside the
-//   stone, up to rounding; slopes of 0 or at least 1e-20; `hit` from convex_trace_start or from
-//   this function.
+// Domain: |direction| = |plane.xyz| = 1; sizes and positions in [1e-4, 1e4]; `position` inside the stone, up to
+//   rounding; slopes of 0 or at least 1e-20; `hit` from convex_trace_start or from this function.
 // Outside: finite for sizes up to 1e18; for other directions distances in units of their length.
-// Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward; portable distance 4 ulp + 4 backward, face 4 backward
-fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32, left: u32) -> ConvexTraceHit {
+// Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward;
+//   portable distance 4 ulp + 4 backward, face 4 backward
+fn convex_trace_step(
+    hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32, left: u32
+) -> ConvexTraceHit {
     let height = plane.w - dot(plane.xyz, position);
     let slope = dot(plane.xyz, direction);
     // The quotient is ignored if the slope is 0.

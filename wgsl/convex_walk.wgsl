@@ -1,4 +1,4 @@
-// convex_walk: the facet through which a ray leaves a convex stone, found in a few steps over a map of the facets by direction. Exact, at a cost that hardly grows with their number.
+// convex_walk: the facet through which a ray leaves a convex stone, in a few steps over a map of the facets. Exact.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 45ed79d5a517787a
 // Source: own. The square: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal

@@ -105,15 +105,15 @@ struct CurvatureFrame {
     bounded: f32,
 }
 
-// Computes the frame by Gram-Schmidt. If p_x and p_y are nearly parallel, rounding changes `second`
-// and `rise` as if p_y were off by a few ulp. All results from one frame belong to the same such
-// p_y, whereas sums and products of p_x and p_y would each belong to a different one.
+// Computes the frame by Gram-Schmidt: all results belong to one p_y, a few ulp off if p_x and p_y are nearly parallel.
 // Returns: frame of p_x and p_y.
 // Units: none for the unit vectors; otherwise that of the derivatives.
-// Domain: p_x and p_y of curvature_pixel: with a largest component in [1, 2), or degenerate in
-//   [1e-7, 1), or 0.
+// Domain: p_x and p_y of curvature_pixel: with a largest component in [1, 2), or degenerate in [1e-7, 1), or 0.
 // Outside: `first` and `second` shrink for shorter ones.
-// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, normal 7 ulp + 1e-9 abs + 4 backward, width 3 ulp, lean 4 ulp + 4 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward; portable first 17 ulp, second 42 ulp + 8 backward, normal 31 ulp + 1e-9 abs + 8 backward, width 12 ulp, lean 18 ulp + 8 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
+// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, normal 7 ulp + 1e-9 abs + 4 backward, width 3 ulp,
+//   lean 4 ulp + 4 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward;
+//   portable first 17 ulp, second 42 ulp + 8 backward, normal 31 ulp + 1e-9 abs + 8 backward, width 12 ulp,
+//   lean 18 ulp + 8 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
 fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     let squared_x = dot(p_x, p_x);
     let width = sqrt(squared_x);
@@ -130,17 +130,13 @@ fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     return CurvatureFrame(first, second, normal, width, dot(p_y, first), rise, max(area * area, least));
 }
 
-// Mean curvature, half the sum of the principal curvatures. With the first form E, F, G and the
-// second e, f, g it is (eG - 2fF + gE) / (2 (EG - F^2)). Here both parts are written with
-// a = p_x x p_y: EG - F^2 = |a|^2 and eG - 2fF + gE = a . (n_x x p_y + p_x x n_y), the rate at
-// which a patch grows on the parallel surface p + t n. Neither cancels if the pixel is seen
-// edge-on, and any component of n_x along the normal drops out.
-// Returns: mean curvature: 1 / R on a sphere, 1 / 2R on a cylinder. Below CURVATURE_EDGE_ON it
-//   fades to 0 in proportion to the squared sine, so that it is at most 2^9 (|n_x| / |p_x| + |n_y|
-//   / |p_y|). It is 0 if a position derivative is 0.
+// Mean curvature, half the sum of the principal curvatures. With a = p_x x p_y it is a . (n_x x p_y + p_x x n_y) /
+// (2 |a|^2), which does not cancel if the pixel is seen edge-on.
+// Returns: mean curvature: 1 / R on a sphere, 1 / 2R on a cylinder; 0 if a position derivative is 0. Below
+//   CURVATURE_EDGE_ON it fades to 0 in proportion to the squared sine, and is at most 2^9 (|n_x| / |p_x| + |n_y| /
+//   |p_y|).
 // Units: the inverse of the position's unit.
-// Domain: position derivatives 0 or with a largest component in [1e-22, 1e22]; normal derivatives
-//   of unit normals.
+// Domain: position derivatives 0 or with a largest component in [1e-22, 1e22]; normal derivatives of unit normals.
 // Outside: finite for |normal_x|, |normal_y| <= 2.
 // Accuracy: lavapipe 4 ulp + 1e-31 abs + 4 backward; portable 10 ulp + 1e-31 abs + 8 backward
 fn curvature_mean(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
@@ -151,17 +147,13 @@ fn curvature_mean(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_
     return 0.5f * dot(area, growth) / max(dot(area, area), least);
 }
 
-// Gaussian curvature, the product of the principal curvatures: (eg - f^2) / (EG - F^2). With
-// a = p_x x p_y, which is width times the normal of curvature_frame, the numerator is
-// a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2. The square is 0 on a smooth surface; otherwise
-// it is the asymmetry that interpolated normals leave. Subtracting it keeps K at most H^2, except
-// for rounding, so the principal curvatures are H +- sqrt(max(H^2 - K, 0)).
-// Returns: Gaussian curvature: 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below
-//   CURVATURE_EDGE_ON it fades to 0 as the square of curvature_mean does. It is 0 if a position
-//   derivative is 0.
+// Gaussian curvature, the product of the principal curvatures: a . (n_x x n_y) less the square of (p_x . n_y -
+// p_y . n_x) / 2, over |a|^2 with a = p_x x p_y. The square is 0 on a smooth surface, and keeps K at most H^2.
+// Returns: Gaussian curvature: 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle; 0 if a position
+//   derivative is 0. Below CURVATURE_EDGE_ON it fades to 0 as the square of curvature_mean does.
 // Units: the inverse of the position's unit, squared.
-// Domain: as for curvature_mean; in addition, normal derivatives perpendicular to the surface's
-//   normal up to 0.4 of their length.
+// Domain: as for curvature_mean; normal derivatives perpendicular to the surface's normal up to 0.4 of their
+//   length.
 // Outside: finite for |normal_x|, |normal_y| <= 2.
 // Accuracy: lavapipe 5 ulp + 1e-31 abs + 6 backward; portable 12 ulp + 1e-31 abs + 12 backward; order kept
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
@@ -174,16 +166,10 @@ fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, nor
     return determinant / frame.bounded * area * (area / frame.bounded);
 }
 
-// Normal curvature along the light: the curvature of the curve on the surface that runs towards the
-// light's foot, II(t, t) / I(t, t), where t is the component of `light` along the surface. In
-// curvature_frame t = x first + y second = alpha p_x + beta p_y, with area alpha = rise x - lean y
-// and area beta = width y, and the normal changes along it by alpha n_x + beta n_y. As the light
-// rises to the zenith, t loses its direction and the result tends to the mean over all directions,
-// which is the mean curvature.
-// Returns: curvature between the principal curvatures; the mean curvature for a light along the
-//   normal. It fades to 0 edge-on as curvature_mean does. On a device that flushes subnormals,
-//   three of them, 2^-126 each, enter the result times fade / total, up to 4 / CURVATURE_ZENITH,
-//   and times `share`, up to 2^10: 2e-28.
+// Normal curvature along the light, that of the curve on the surface that runs towards the light's foot: II(t,
+// t) / I(t, t), with t the component of `light` along the surface. At the zenith t loses its direction.
+// Returns: curvature between the principal curvatures; the mean curvature for a light along the normal. It
+//   fades to 0 edge-on as curvature_mean does.
 // Units: the inverse of the position's unit.
 // Domain: as for curvature_gaussian; |light| = 1.
 // Outside: finite for |normal_x|, |normal_y| <= 2 and |light| <= 2.

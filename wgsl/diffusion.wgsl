@@ -1,4 +1,4 @@
-// diffusion: light that diffuses through matter on a grid: its equation, its source, what the eye sees of it, and what the grid misses at the surface.
+// diffusion: light that diffuses in matter on a grid: equation, source, what the eye sees, what surface cells miss.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 21e62c931c059c92
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
@@ -112,14 +112,13 @@ fn diffusion_profile(depth: f32, node_depth: f32, milne: f32) -> f32 {
     return (below + milne) / max(node_depth + milne, 1e-30f);
 }
 
-// What the exact law of a half space adds to diffusion's at an angle, for light that comes from afar: H / (1
-// - kappa m) by Milne's problem, over diffusion's (milne + m) / (1 - (kappa m)^2), relative to the value
-// along the normal. It is a factor on light that enters, and on light that leaves.
-// Returns: H(m) (1 + kappa m) / (milne + m) over the same at m = 1: from 1 along the normal to 0.82 or more
-//   grazing, and at most 1.05 between them.
+// What the exact law of a half space adds to diffusion's at an angle, for light from afar: H / (1 - kappa m) over
+// diffusion's (milne + m) / (1 - (kappa m)^2), relative to the normal. A factor on light that enters, and on light
+// that leaves.
+// Returns: H(m) (1 + kappa m) / (milne + m) over the same at m = 1: from 1 along the normal to 0.82 or more grazing,
+//   and at most 1.05 between them.
 // Units: `h` is half_space_h at the cosine, `h_normal` at 1; `milne` in mean free paths.
-// Domain: any cosine, clamped to [0, 1]; h and h_normal in [1, 3]; any gamma, clamped to [0, 1]; milne in
-//   [0.5, 20].
+// Domain: any cosine, clamped to [0, 1]; h and h_normal in [1, 3]; any gamma, clamped to [0, 1]; milne in [0.5, 20].
 // Outside: finite for magnitudes up to 1e9, if h_normal is at least 1 and milne at least 0.01.
 // Accuracy: lavapipe 8 ulp; portable 18 ulp
 fn diffusion_angle(cosine: f32, h: f32, h_normal: f32, gamma: f32, milne: f32) -> f32 {
@@ -211,14 +210,13 @@ fn diffusion_unscattered(thickness: f32, near: f32, far: f32) -> f32 {
     return exp(-min(nearest, DIFFUSION_OPAQUE)) * max(x * (means.x + means.y), 0.0f);
 }
 
-// Fluence in a half space at a depth, lit by parallel light, by the exact solution of the equation of
-// diffusion with its exact source: a e^(-kappa t) + b e^(-t/m0). Both factors have a pole where
-// kappa m0 = 1, that is removed here: all terms are positive.
-// Returns: fluence of light that has collided, per perpendicular irradiance 1, in [0, 63];
-//   3 m0 (milne + m0) deep inside matter that absorbs nothing.
+// Fluence in a half space at a depth, lit by parallel light, by the exact solution of diffusion's equation
+// with its exact source: a e^(-kappa t) + b e^(-t/m0). The pole of both factors at kappa m0 = 1 is removed.
+// Returns: fluence of light that has collided, per perpendicular irradiance 1, in [0, 63]; 3 m0 (milne +
+//   m0) deep inside matter that absorbs nothing.
 // Units: none; `depth` is an optical depth along the normal, `milne` in mean free paths.
-// Domain: any depth, clamped to [0, 1e6]; any cosine_light, clamped to [1e-9, 1]; any gamma, clamped to
-//   [0, 1]; any milne, clamped to [0.5, 20].
+// Domain: any depth, clamped to [0, 1e6]; any cosine_light, clamped to [1e-9, 1]; any gamma, clamped to [0,
+//   1]; any milne, clamped to [0.5, 20].
 // Outside: nothing.
 // Accuracy: lavapipe 26 ulp + 1e-30 abs + 4 backward; portable 36 ulp + 1e-30 abs + 6 backward
 fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f32 {
@@ -233,7 +231,7 @@ fn diffusion_fluence(depth: f32, cosine_light: f32, gamma: f32, milne: f32) -> f
     return strength * (surface + t * diffusion_mean(damped, t / c));
 }
 
-// Share of the light that comes through a slab, by diffusion: light falls on the near side along the normal,
+// Share of the light that comes through a slab, by diffusion. Light falls on the near side along the normal,
 // and its first collisions count as one plane of sources at their mean depth, from which it diffuses to
 // Robin's boundaries on both sides. What passes without a collision is left out: it goes on straight.
 // Returns: flux through the far side, in [0, 0.4] for an index-matched surface; within 3 % of random walks
@@ -284,21 +282,18 @@ fn diffusion_tail(depth: f32, cosine_eye: f32, cosine_light: f32, gamma: f32, mi
     return strength * seen * (surface + share * t * diffusion_mean(damped, t / c));
 }
 
-// What the grid does not show at a lit surface: the light that the exact half space sends to the eye, less
-// its single scattering, less what the grid shows of such a half space. The grid has nodes at the optical
-// depths `depth` and `depth + gap`, with exact values. It shows Robin's profile up to the first, a straight
-// line to the second, and the solution from there on. What it shows is a sum of positive terms: only the
-// final differences cancel.
-// Returns: law - albedo / (4 pi) (m0 / (m + m0) + angle shown), in [-7, 4]. Add it to what the grid shows
-//   times the angles' factors, and to single scattering, times the light that reaches the surface.
-// Units: 1/sr; `law` is the exact radiance per perpendicular irradiance 1, m0 times half_space_brdf;
-//   optical depths along the normal; `milne` in mean free paths; `angle` is the product of diffusion_angle
-//   for eye and light.
-// Domain: any cosines, clamped to [1e-9, 1]; any law, clamped to [0, 4]; any gamma, clamped to [0, 1]; any
-//   milne, clamped to [0.5, 20]; any depth and gap, clamped to [0, 1e6]; any angle, clamped to [0, 1.25].
+// What the grid, with nodes at the optical depths `depth` and `depth + gap`, does not show of a lit half space.
+// Returns: law - albedo / (4 pi) (m0 / (m + m0) + angle shown), in [-7, 4]. Add it to what the grid shows times the
+//   angles' factors, and to single scattering, times the light that reaches the surface.
+// Units: 1/sr; `law` is the exact radiance per perpendicular irradiance 1, m0 times half_space_brdf; optical depths
+//   along the normal; `milne` in mean free paths; `angle` is the product of diffusion_angle for eye and light.
+// Domain: any, clamped: cosines to [1e-9, 1], law to [0, 4], gamma to [0, 1], milne to [0.5, 20], depth and gap to
+//   [0, 1e6], angle to [0, 1.25].
 // Outside: nothing.
 // Accuracy: lavapipe 1.1e-5 abs; portable 2.1e-5 abs
-fn diffusion_local(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
+fn diffusion_local(
+    cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32
+) -> f32 {
     let m = clamp(cosine_eye, DIFFUSION_GRAZING, 1.0f);
     let c = clamp(cosine_light, DIFFUSION_GRAZING, 1.0f);
     let exact = clamp(law, 0.0f, 4.0f);
@@ -316,14 +311,13 @@ fn diffusion_local(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, mil
     return exact - 0.07957747f * (1.0f - g) * (1.0f + g) * (c / (m + c) + clamp(angle, 0.0f, 1.25f) * shown);
 }
 
-// The same under light that comes alike from all around: what such a half space sends to the eye, less what
-// the grid shows of it. Its fluence, relative to that outside, is e^(-kappa t) / (1 + kappa milne).
-// Returns: law - albedo angle shown, in [-1.25, 1]; 1 - angle for matter that absorbs nothing. Add it, times
-//   the radiance that arrives, to what the grid shows times the eye's factor.
-// Units: none; `law` is the exact radiance under a radiance of 1, half_space_directional; optical depths along
-//   the normal; `milne` in mean free paths; `angle` is diffusion_angle for the eye.
-// Domain: any cosine, clamped to [1e-9, 1]; any law, clamped to [0, 1]; any gamma, clamped to [0, 1]; any
-//   milne, clamped to [0.5, 20]; any depth and gap, clamped to [0, 1e6]; any angle, clamped to [0, 1.25].
+// The same under light from all around, whose fluence relative to that outside is e^(-kappa t) / (1 + kappa milne).
+// Returns: law - albedo angle shown, in [-1.25, 1]; 1 - angle for matter that absorbs nothing. Add it, times the
+//   radiance that arrives, to what the grid shows times the eye's factor.
+// Units: none; `law` is the exact radiance under a radiance of 1, half_space_directional; optical depths along the
+//   normal; `milne` in mean free paths; `angle` is diffusion_angle for the eye.
+// Domain: any, clamped: cosine to [1e-9, 1], law to [0, 1], gamma to [0, 1], milne to [0.5, 20], depth and gap to
+//   [0, 1e6], angle to [0, 1.25].
 // Outside: nothing.
 // Accuracy: lavapipe 1.7e-6 abs; portable 2.8e-6 abs
 fn diffusion_local_around(cosine_eye: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
@@ -361,15 +355,13 @@ fn diffusion_weight(fraction: vec3f, corner: u32, volume: f32) -> f32 {
     return (along.x * along.y * along.z + DIFFUSION_LEAST_WEIGHT) * volume;
 }
 
-// How the nodes' weights change with their depth, so that their mean depth is that of the point looked up:
-// the weight of a node at a distance `d` below the mean is multiplied by 1 + slope d. Between two nodes below
-// one another this makes linear interpolation of the weights by volume. No weight falls below 0, and none
-// grows to more than four times: else slivers of matter, which are darker than what they lie on, would show.
+// How the nodes' weights change with their depth, so that their mean depth is that of the point looked up. A
+// node at a distance `d` below the mean gets 1 + slope d times its weight, never below 0 nor over four times.
 // Returns: missing / variance, from -1 / below to 1 / above, and at most 3 / (above + below) either way.
 // Units: spacings: `missing` is the point's depth less the nodes' mean, `variance` that of their depths,
 //   `above` and `below` are the distances from the mean to the shallowest and to the deepest.
-// Domain: missing with a magnitude up to 1e18; variance up to 1e18, at least 1e-4 counts; above and below up
-//   to 1e18, at least 0.01 counts.
+// Domain: missing with a magnitude up to 1e18; variance up to 1e18, at least 1e-4 counts; above and below up to
+//   1e18, at least 0.01 counts.
 // Outside: in [-100.01, 100.01] for magnitudes up to 1e18.
 // Accuracy: lavapipe 1.5 ulp; portable 4 ulp
 fn diffusion_slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
@@ -380,11 +372,8 @@ fn diffusion_slope(missing: f32, variance: f32, above: f32, below: f32) -> f32 {
     return clamp(wanted, -falling, rising);
 }
 
-// Factor of a flux limiter on the conductance between two nodes. Diffusion's flux is its coefficient times the
-// slope of the fluence, however thin the matter is. Light streams no faster than all of it in one direction: the
-// flux is at most the fluence. The factor is 3 (coth R - 1/R) / R, with the slope R of the logarithm of the
-// fluence per mean free path (Levermore and Pomraning). It depends on the fluence, so that the equations are
-// neither linear in the light nor reciprocal.
+// Factor of a flux limiter on the conductance between two nodes, so that the flux is at most the fluence.
+// It is 3 (coth R - 1/R) / R, with R the slope of the logarithm of the fluence per mean free path.
 // Returns: 1 for equal fluences, 3 / R for large R, in [0, 1].
 // Units: both fluences in one unit; `thickness` is the optical distance between the nodes.
 // Domain: fluences 0 or in [1e-18, 1e18], negative ones count as 0; any thickness, clamped to [1e-9, 1e15].

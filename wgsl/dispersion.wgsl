@@ -146,17 +146,14 @@ fn dispersion_abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
     return (index_d - 1.0f) / max(index_f - index_c, 1e-12f);
 }
 
-// The gradient after a ray enters the gem: dispersion_refract for a gradient of 0, at less cost.
-// With the tangential part t of the ray, c = -normal . direction and
-// root = sqrt(m + c^2) = n cos(angle of refraction), it is -(t + |t|^2 / root normal) / n^2, with
-// the length tan(angle of refraction) / n. `root` is clamped to at least DISPERSION_CRITICAL.
+// The gradient after a ray enters the gem, -(t + |t|^2 / root normal) / n^2: dispersion_refract for a gradient of 0,
+// at less cost. t is the ray's tangential part; root, n cos(angle of refraction), is at least DISPERSION_CRITICAL.
 // Returns: d(refracted direction) / d(relative_index).
-// Units: none; unit vectors and a ratio, index_gem / index_outside. If the outside is not air,
-//   divide the result by its index to get the derivative with respect to the gem's own index.
+// Units: none; unit vectors and a ratio, index_gem / index_outside. If the outside is not air, divide the result by
+//   its index to get the derivative with respect to the gem's own index.
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1, 4].
-// Outside: finite. A gem in a denser medium takes dispersion_refract, which knows total internal
-//   reflection. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl
-//   does.
+// Outside: finite. A gem in a denser medium takes dispersion_refract, which knows total internal reflection. A
+//   normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
 // Accuracy: lavapipe 8 ulp + 6 backward; portable 16 ulp + 12 backward
 fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec3f {
     let cosine = max(-dot(normal, direction), 0.0f);
@@ -166,23 +163,14 @@ fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec
     return (tangent + across * normal) / (-relative_index * relative_index);
 }
 
-// The gradient after a refraction: the derivative of refraction.wgsl's direction, for both
-// branches. With the symbols above, dc = -normal . gradient and b = (slope / n) |t|^2 + c dc, it is
-// (gradient + dc normal - (slope / n) t - b / root normal) / n. Only the part along the normal
-// grows without bound near the critical angle, and only in that part is the root clamped. If
-// rounding (12 * 2^-24 in root^2) refracts a ray that is just beyond that angle, |t|^2 exceeds n^2
-// by the same amount: in relative terms, up to 96 ulp for the smallest index.
-// Returns: d(direction) / d(index of the gem). Its length is at most 17 / n
-//   (|gradient| + |slope| / n), and it is perpendicular to the new direction unless the root is
-//   clamped. Under total internal reflection it is the reflected gradient.
-// Units: none; unit vectors and ratios. `relative_index_slope` is
-//   d(relative_index) / d(index of the gem): 1 / index_outside on the way in, 1 in air;
-//   -relative_index / index_gem on the way out, -1 / index_gem^2 into air.
-// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4],
-//   gradient . direction = 0, |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40,
-//   1] or 0.
-// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl
-//   does.
+// The gradient after a refraction: the derivative of refraction.wgsl's direction, for both branches.
+// Returns: d(direction) / d(index of the gem), at most 17 / n (|gradient| + |slope| / n) long, and perpendicular
+//   to the new direction unless the root is clamped. Under total internal reflection it is the reflected gradient.
+// Units: none; unit vectors and ratios. `relative_index_slope` is d(relative_index) / d(index of the gem): 1 /
+//   index_outside on the way in, 1 in air; -relative_index / index_gem on the way out, -1 / index_gem^2 into air.
+// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4], gradient . direction =
+//   0, |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40, 1] or 0.
+// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
 // Accuracy: lavapipe 96 ulp + 10 backward; portable 192 ulp + 20 backward; order kept
 fn dispersion_refract(
     direction: vec3f,

@@ -1,4 +1,4 @@
-// environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
+// environment: coordinates and texels of a latitude-longitude radiance map, and a studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash be4a580c652f3a11
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the
@@ -10,12 +10,9 @@
 // own arctangent and sine, because WGSL allows atan2 an error of 4096 ulp (2.4e-4 in u, one texel
 // of a 4096 map) and sine an error of 2^-11 (a "unit" vector that is off by 5e-4).
 
-// Angle of the point (x, y) in turns, counterclockwise from +x.
-// The arctangent of a ratio in [0, 1], extended to all octants: a polynomial in odd powers, fitted
-// by the Remez exchange algorithm for the smallest relative error of atan(ratio) / 2 pi, which is
-// 1.0e-7, and 1.6e-7 with the coefficients rounded to f32.
-// Returns: turns in [-1/2, 1/2]; 0 at the origin; 1/2 on the negative x axis, for a zero y of
-//   either sign.
+// Angle of the point (x, y) in turns, counterclockwise from +x: the arctangent of a ratio in [0, 1] by a
+// polynomial in odd powers, extended to all octants.
+// Returns: turns in [-1/2, 1/2]; 0 at the origin; 1/2 on the negative x axis, for a zero y of either sign.
 // Units: turns; x and y in any common unit.
 // Domain: x and y are each zero or of magnitude in [2^-126, 2^126].
 // Outside: finite; a subnormal may count as zero.
@@ -49,10 +46,8 @@ fn environment_hypot(a: f32, b: f32) -> f32 {
     return longer * sqrt(1.0f + ratio * ratio);
 }
 
-// Sine of an angle in turns, of any size.
-// The angle is reduced by the nearest whole number of turns and then folded at +-1/4, both without
-// rounding. There the sine is a polynomial in odd powers, fitted by the Remez exchange algorithm
-// for the smallest relative error of sin(2 pi t), 4.2e-8 with rounded coefficients. The cosine is
+// Sine of an angle in turns, of any size. The nearest whole number of turns is subtracted and the rest
+// folded at +-1/4, both without rounding; there it is a polynomial in odd powers. The cosine is
 // -environment_sine(turns - 0.25f).
 // Returns: sin(2 pi turns), in [-1, 1] up to rounding; exactly 0 at every half turn.
 // Units: turns.
@@ -66,12 +61,10 @@ fn environment_sine(turns: f32) -> f32 {
     return folded * (6.2831855f - s * (41.34168f - s * (81.602234f - s * (76.57499f - s * 39.710918f))));
 }
 
-// Latitude-longitude coordinates of a direction.
-// The polar angle is computed from both legs of its triangle, which keeps full precision at the
-// poles. Nothing is normalised, so the length does not matter.
-// Returns: u, v in [0, 1]. u = 1/2 + atan2(z, x) / 2 pi, so the seam is at -x (u is 1 on it and 0
-//   just behind it) and the middle is at +x. v is 0 at +Y (zenith), 1/2 at the horizon and 1 at -Y.
-//   At both poles u = 1/2.
+// Latitude-longitude coordinates of a direction of any length. The polar angle is computed from both legs of
+// its triangle, which keeps full precision at the poles.
+// Returns: u, v in [0, 1]. u = 1/2 + atan2(z, x) / 2 pi, so the seam is at -x (u is 1 on it and 0 just behind
+//   it) and the middle is at +x. v is 0 at +Y (zenith), 1/2 at the horizon and 1 at -Y. At both poles u = 1/2.
 // Units: fractions of the map.
 // Domain: not the zero vector; each component is zero or of magnitude in [2^-126, 2^126].
 // Outside: (1/2, 0) for the zero vector; subnormal components may count as zero.
@@ -110,16 +103,15 @@ struct EnvironmentTexels {
     weight: vec2f,
 }
 
-// Texels and weights of a bilinear lookup, for maps whose format the sampler cannot filter (32-bit
-// float).
-// Longitude is periodic, so columns wrap; latitude ends at the poles, so rows are clamped. The
-// radiance is mix(mix(t[lower.x, lower.y], t[upper.x, lower.y], weight.x), mix(t[lower.x, upper.y],
-// t[upper.x, upper.y], weight.x), weight.y).
+// Texels and weights of a bilinear lookup, for maps that the sampler cannot filter (32-bit float).
+// Columns wrap, rows are clamped. The radiance is mix(mix(t[lower.x, lower.y], t[upper.x, lower.y],
+// weight.x), mix(t[lower.x, upper.y], t[upper.x, upper.y], weight.x), weight.y).
 // Returns: columns below size.x, rows below size.y, weights in [0, 1].
 // Units: texels; texel i covers [i, i + 1] / size, and its value is at its centre.
 // Domain: u in [0, 4], v in [0, 1]; size from 1 to 16384.
 // Outside: u of either sign repeats, less exactly below 0, as long as it is finite; v is clamped.
-// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward; portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward; order kept
+// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward;
+//   portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward; order kept
 fn environment_texels(uv: vec2f, size: vec2u) -> EnvironmentTexels {
     // The value of a texel is at its centre, half a texel from its edge.
     let column = (uv.x - floor(uv.x)) * f32(size.x) - 0.5f;
@@ -154,7 +146,8 @@ struct EnvironmentHarmonics {
 // Units: none.
 // Domain: |direction| = 1.
 // Outside: finite for components up to 1e9.
-// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs; portable zeroth 1 ulp, first 2 ulp, second 6e-7 abs, fourth 3e-6 abs
+// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs;
+//   portable zeroth 1 ulp, first 2 ulp, second 6e-7 abs, fourth 3e-6 abs
 fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
     let x = direction.x;
     let y = direction.y;
@@ -184,16 +177,14 @@ fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
     return EnvironmentHarmonics(0.28209478f, first, second, fourth);
 }
 
-// Coverage of a direction by a rectangular light with soft edges.
-// The light is perpendicular to `axis`, at distance 1, with its vertical along `up`. Directions are
-// projected onto its plane (gnomonic projection), where each edge is a smoothstep that extends
-// `softness` to both sides.
+// Coverage of a direction by a rectangular light with soft edges, perpendicular to `axis` at distance 1,
+// its vertical along `up`. On its plane each edge is a smoothstep that extends `softness` to both sides.
 // Returns: coverage in [0, 1]: 1 inside, 0 outside and in the entire half space behind.
 // Units: none; sizes are relative to the light's distance, i.e. tangents of angles.
-// Domain: |direction| = |axis| = |up| = 1, axis . up = 0, axis . direction at most 0 or at least
-//   2^-100; softness in [1/256, 1]; each component of half_size in [softness, 8].
-// Outside: any length of direction gives the same, as long as products stay finite; softness 0 has
-//   no edge to divide by.
+// Domain: |direction| = |axis| = |up| = 1, axis . up = 0, axis . direction at most 0 or at least 2^-100;
+//   softness in [1/256, 1]; each component of half_size in [softness, 8].
+// Outside: any length of direction gives the same, as long as products stay finite; softness 0 has no edge
+//   to divide by.
 // Accuracy: lavapipe 6 ulp + 3 backward; portable 16 ulp + 8 backward
 fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
     let depth = dot(direction, axis);
@@ -226,13 +217,10 @@ fn environment_dome(direction: vec3f, ground: vec3f, zenith: vec3f) -> vec3f {
     return ground * (1.0f - weight) + zenith * weight;
 }
 
-// A jeweller's studio: a dim tent over dark paper, with a few small, bright lights.
-// A brilliant shows what its facets reflect. Contrast creates scintillation and narrow lights
-// create fire, so most of the sphere is dark. The lights are at many elevations, from 74 degrees
-// down to 20, from which the crown gathers light; weak ones are below the horizon. The axes and up
-// vectors are rational unit vectors (Pythagorean quadruples), so they are orthogonal as written.
-// Returns: linear Rec. 709 radiance, each channel in [0.0239, 20.4]; continuous. No two lights
-//   overlap.
+// A jeweller's studio: a dim tent over dark paper, with a few small, bright lights. Contrast creates
+// scintillation, and narrow lights create fire. Axes and up vectors are Pythagorean quadruples, so they
+// are orthogonal as written.
+// Returns: linear Rec. 709 radiance, each channel in [0.0239, 20.4]; continuous. No two lights overlap.
 // Units: radiance, 1 = diffuse white at exposure 1.
 // Domain: |direction| = 1.
 // Outside: lights do not depend on the length, the dome extrapolates.
@@ -267,5 +255,6 @@ fn environment_studio(direction: vec3f) -> vec3f {
         vec3f(0.0f, -3.0f, -4.0f) / 5.0f, vec3f(0.0f, 4.0f, -3.0f) / 5.0f, vec2f(0.60f, 0.20f), 0.10f);
     let front_card = vec3f(2.0f, 1.85f, 1.7f) * environment_softbox(direction,
         vec3f(0.0f, -5.0f, 12.0f) / 13.0f, vec3f(0.0f, 12.0f, 5.0f) / 13.0f, vec2f(0.50f, 0.14f), 0.10f);
-    return surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card;
+    return surround + key + overhead + cool_strip + warm_strip
+        + back_spark + front_spark + low_spark + back_card + front_card;
 }

@@ -5,18 +5,13 @@
 //   docs/fresnel.md shows. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering",
 //   1994, eq. (15).
 
-// Reflectance of a dielectric interface, exact for unpolarised light, with total internal
-// reflection. A Fresnel amplitude is a quotient (x - y) / (x + y), which cancels for an index near
-// 1 and at grazing incidence. If it is multiplied by (x + y) / (x + y), its numerator x^2 - y^2 has
-// a closed form that contains no square roots and is proportional to n^2 - 1.
-// Returns: reflectance in [0, 1], the mean of the two polarisations; 1 under total internal
-//   reflection.
-// Units: none. `cosine` is the cosine of the angle of incidence, -dot(normal, incident);
-//   `relative_index` is n_transmitted / n_incident.
-// Domain: relative_index in [1/4, 4]; any cosine, clamped to [0, 1]. A cosine below 0, as occurs at
-//   a silhouette if an interpolated normal faces away, counts as grazing incidence; a cosine above
-//   1, caused by rounding, counts as normal incidence. relative_index = 1 gives 0, even at grazing
-//   incidence, where n -> 1 and cosine -> 0 have no common limit.
+// Reflectance of a dielectric interface, exact for unpolarised light, with total internal reflection. Each amplitude (x
+// - y) / (x + y) is multiplied by (x + y) / (x + y): x^2 - y^2 has a closed form without roots, which does not cancel.
+// Returns: reflectance in [0, 1], the mean of the two polarisations; 1 under total internal reflection.
+// Units: none. `cosine` is that of the angle of incidence, -dot(normal, incident); `relative_index` n_transmitted /
+//   n_incident.
+// Domain: relative_index in [1/4, 4]; any cosine, clamped to [0, 1]: below 0, as at a silhouette, it counts as grazing
+//   incidence, above 1, by rounding, as normal incidence. relative_index = 1 gives 0, even at grazing incidence.
 // Outside: finite and in [0, 1] for relative_index in [2^-30, 2^30].
 // Accuracy: lavapipe 19.5 ulp + 0.92 backward; portable 128 ulp + 8 backward; order kept
 fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
@@ -58,14 +53,13 @@ fn fresnel_normal_incidence(relative_index: f32) -> f32 {
     return min(amplitude * amplitude, 1.0f);
 }
 
-// Schlick's approximation, the cheap rung: a fifth power joins the exact value at normal incidence
-// to 1 at grazing incidence. It uses the cosine in the optically thinner medium, which is the
-// smaller of the two cosines. Light that leaves the denser side therefore reaches a reflectance of
-// 1 at the critical angle instead of at 90 degrees, and stays at 1 beyond it.
+// Schlick's approximation, the cheap rung: a fifth power joins the exact value at normal incidence to 1
+// at grazing incidence. It uses the smaller cosine, in the thinner medium: from the denser side the
+// reflectance is 1 from the critical angle on.
 // Returns: reflectance in [0, 1]; 1 under total internal reflection.
 // Units: the same as for fresnel_dielectric.
-// Domain: the same as for fresnel_dielectric. relative_index = 1 gives (1 - cosine)^5 instead of 0:
-//   the approximation does not vanish when the interface does.
+// Domain: the same as for fresnel_dielectric. relative_index = 1 gives (1 - cosine)^5 instead of 0: the
+//   approximation does not vanish when the interface does.
 // Outside: finite and in [0, 1] for relative_index in [2^-30, 2^30].
 // Accuracy: lavapipe 10 ulp + 2 backward; portable 32 ulp + 16 backward
 fn fresnel_schlick(cosine: f32, relative_index: f32) -> f32 {

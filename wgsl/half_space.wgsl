@@ -1,4 +1,4 @@
-// half_space: the law by which light enters and leaves a half space of scattering matter: Chandrasekhar's diffuse reflection, with a dielectric boundary if there is one.
+// half_space: the law by which light enters and leaves a half space of scattering matter, with or without a boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash d7ac78b53da301dc
 // Source: Chandrasekhar, "Radiative Transfer", 1960, sections 33 to 36, for the law and the
@@ -236,14 +236,12 @@ fn half_space_gain(gamma: f32, edge: f32) -> f32 {
 }
 
 // The law between directions inside the boundary: index-matched matter, and the light that the boundary
-// has thrown back. The latter factors: the boundary throws back what comes below the edge, and matter
-// lit from all directions below an edge reflects by H(m) times the integral of m' / (m + m') up to it.
-// That integral, over the edge, is 1 - ln(1 + y) / y with y = edge / m, here by Pade's form of order 2 in
-// p = edge / (m + edge).
+// has thrown back. The latter is a product of H(m) (1 - ln(1 + y) / y), with y = edge / m, for both
+// directions: docs/half_space.md.
 // Returns: BRDF between the directions inside; half_space_brdf, to rounding, if the edge is 0.
 // Units: 1/sr; cosines inside, `edge` and `gain` as half_space_edge and half_space_gain return them.
-// Domain: any cosines, clamped to [1e-18, 1]; any gamma, clamped to [0, 1]; any edge, clamped to [0, 0.981];
-//   any gain, clamped to [0, 100].
+// Domain: any cosines, clamped to [1e-18, 1]; any gamma, clamped to [0, 1]; any edge, clamped to [0,
+//   0.981]; any gain, clamped to [0, 100].
 // Outside: nothing.
 // Accuracy: lavapipe 2.6e-4 rel; portable 2.6e-4 rel
 fn half_space_inside(cosine_eye: f32, cosine_light: f32, gamma: f32, edge: f32, gain: f32) -> f32 {
@@ -259,17 +257,18 @@ fn half_space_inside(cosine_eye: f32, cosine_light: f32, gamma: f32, edge: f32, 
     return albedo * both * (0.07957747f / sum + thrown_back);
 }
 
-// The law of matter behind a dielectric boundary, for the light that enters. Multiply it by the shares of
-// light that pass the boundary, (1 - F(eye)) (1 - F(light)), with F by the module fresnel, and add the
-// reflection at the boundary itself.
-// Returns: BRDF without the shares that pass: half_space_inside of the refracted cosines over n^2;
-//   half_space_brdf for an index of 1 and an edge of 0.
+// The law of matter behind a dielectric boundary, for light that enters. Multiply it by the shares that pass the
+// boundary, (1 - F(eye)) (1 - F(light)), with F by the module fresnel, and add the boundary's own reflection.
+// Returns: BRDF without the shares that pass: half_space_inside of the refracted cosines over n^2; half_space_brdf
+//   for an index of 1 and an edge of 0.
 // Units: 1/sr; cosines outside; `relative_index` is n_inside / n_outside.
-// Domain: any cosines, clamped to [1e-18, 1]; any relative_index, clamped to [1, 4]; gamma, edge and gain as
-//   for half_space_inside.
+// Domain: any cosines, clamped to [1e-18, 1]; any relative_index, clamped to [1, 4]; gamma, edge and gain as for
+//   half_space_inside.
 // Outside: nothing.
 // Accuracy: lavapipe 2.6e-4 rel; portable 2.7e-4 rel
-fn half_space_dielectric(cosine_eye: f32, cosine_light: f32, gamma: f32, relative_index: f32, edge: f32, gain: f32) -> f32 {
+fn half_space_dielectric(
+    cosine_eye: f32, cosine_light: f32, gamma: f32, relative_index: f32, edge: f32, gain: f32
+) -> f32 {
     let n = clamp(relative_index, 1.0f, HALF_SPACE_DENSEST);
     let eye = half_space_refract(cosine_eye, n);
     let light = half_space_refract(cosine_light, n);
@@ -277,7 +276,7 @@ fn half_space_dielectric(cosine_eye: f32, cosine_light: f32, gamma: f32, relativ
 }
 
 // How the odds of absorption behind a boundary exceed those by Saunderson's formula, which takes the light
-// that meets the boundary from inside to be diffuse: really more of it is slanted, is thrown back, and
+// that meets the boundary from inside to be diffuse. Really more of it is slanted, is thrown back, and
 // meets matter that reflects slanted light better.
 // Returns: factor in [1, 1.62], accurate to 0.25 %.
 // Units: none.

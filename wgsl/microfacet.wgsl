@@ -1,4 +1,4 @@
-// microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
+// microfacet: a rough dielectric's highlight: Cook and Torrance's reflectance, Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 6100eccd79f2cde0
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
@@ -20,16 +20,14 @@ const MICROFACET_GRAZING: f32 = 1e-24f;
 // vectors themselves is 1e-7.
 const MICROFACET_OPPOSITE: f32 = 1e-30f;
 
-// Distribution of the facets' normals by Trowbridge and Reitz: alpha^2 / (pi (alpha^2 cos^2 +
-// sin^2)^2), with the cosine and sine of the angle between `normal` and `half`. The squared sine is
-// computed as |normal x half|^2, because 1 - cos^2 loses nearly all its digits at the angles that
-// matter, those near alpha.
-// Returns: area of facets per area of surface and solid angle, in [0, 1 / (pi alpha^2)]; even in
-//   `half`; 0 if either vector is 0.
+// Distribution of the facets' normals by Trowbridge and Reitz: alpha^2 / (pi (alpha^2 cos^2 + sin^2)^2), of the angle
+// between `normal` and `half`. sin^2 is |normal x half|^2, because 1 - cos^2 loses nearly all its digits near alpha.
+// Returns: area of facets per area of surface and solid angle, in [0, 1 / (pi alpha^2)]; even in `half`; 0 if either
+//   vector is 0.
 // Units: 1/sr; alpha is a slope.
 // Domain: normal and half of any length in [1e-4, 1e4], or 0; any alpha, clamped to [0.001, 1].
-// Outside: finite and not negative as long as the fourth power of the product of the lengths is
-//   finite; 0 where its square underflows.
+// Outside: finite and not negative as long as the fourth power of the product of the lengths is finite; 0 where its
+//   square underflows.
 // Accuracy: lavapipe 35 ulp + 1 backward; portable 75 ulp + 2 backward; order kept
 fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     let a = clamp(alpha, MICROFACET_SMOOTHEST, 1.0f);
@@ -48,16 +46,13 @@ fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     return 0.31830987f * quotient * quotient;
 }
 
-// Smith's height-correlated masking and shadowing, divided by 4 (n . l) (n . v), the divisor of the
-// reflectance. Masking and shadowing give the share of facets that the light reaches and the eye
-// sees; the height of a facet hides it from both alike. In this form all factors that tend to 0 at
-// grazing incidence have cancelled, except for one sum.
-// Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 +
-//   (1 - alpha^2) n.v^2)), in [1/4, 5e23].
+// Smith's height-correlated masking and shadowing, the share of facets that light and eye both see, divided
+// by 4 (n . l) (n . v). All factors that tend to 0 at grazing incidence have cancelled, except for one sum.
+// Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 + (1 -
+//   alpha^2) n.v^2)), in [1/4, 5e23].
 // Units: none; the cosines are relative to the surface normal, alpha is a slope.
-// Domain: any cosines, clamped to [0, 1]. A cosine below 0, as occurs at a silhouette if an
-//   interpolated normal faces away, counts as grazing. Any alpha, clamped to [0.001, 1]. A divisor
-//   below 1e-24 counts as 1e-24.
+// Domain: any cosines, clamped to [0, 1]: one below 0, at a silhouette if an interpolated normal faces
+//   away, counts as grazing. Any alpha, clamped to [0.001, 1]. A divisor below 1e-24 counts as 1e-24.
 // Outside: nothing.
 // Accuracy: lavapipe 7 ulp; portable 24 ulp
 fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
@@ -84,15 +79,13 @@ fn microfacet_half(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     return sum / sqrt(max(dot(sum, sum), MICROFACET_OPPOSITE));
 }
 
-// Share of a light's irradiance, measured perpendicular to its direction, that the rough surface
-// reflects into the eye: BRDF times n . l. Multiply it by that irradiance and add the product to
-// the diffuse light of the body below the surface.
-// Returns: D F G2 / (4 n.l n.v) n.l in [0, fresnel / (2 pi alpha^3)]; 0 if the light is below the
-//   surface or the normal is 0.
+// Share of a light's irradiance, measured perpendicular to its direction, that the rough surface reflects into
+// the eye: BRDF times n . l. The product with that irradiance adds to the diffuse light of the body below.
+// Returns: D F G2 / (4 n.l n.v) n.l in [0, fresnel / (2 pi alpha^3)]; 0 if the light is below the surface or
+//   the normal is 0.
 // Units: 1/sr; alpha is a slope, fresnel a share of light.
-// Domain: unit vectors, and the normal may also be 0; any alpha, clamped to [0.001, 1]; fresnel in
-//   [0, 1], evaluated at the cosine between half and light. An eye below the surface counts as
-//   grazing.
+// Domain: unit vectors, and the normal may also be 0; any alpha, clamped to [0.001, 1]; fresnel in [0, 1],
+//   evaluated at the cosine between half and light. An eye below the surface counts as grazing.
 // Outside: for vectors of other lengths finite, but no reflectance; proportional to fresnel.
 // Accuracy: lavapipe 45 ulp + 4 backward; portable 105 ulp + 8 backward
 fn microfacet_reflectance(normal: vec3f, toward_light: vec3f, toward_eye: vec3f, alpha: f32, fresnel: f32) -> f32 {

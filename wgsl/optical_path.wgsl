@@ -1,4 +1,4 @@
-// optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
+// optical_path: paths of least optical depth from the light to every voxel of a body, and the light along them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 0339667324ad2b29
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
@@ -44,17 +44,13 @@ fn optical_path_relax(cost: f32, neighbour: f32, edge: f32) -> f32 {
     return select(cost, through, through < cost);
 }
 
-// The cost of a node by the Eikonal equation |grad T| = extinction, with Godunov's upwind
-// differences: the T with
-//   sum over the axes of max(T - least, 0)^2 = slowness^2.
-// With the least of the three costs subtracted, and in units of the slowness, the radicands lie
-// between 1 and 3: nothing cancels, overflows or becomes negative, whatever the costs. An axis
-// whose neighbour is too far ahead to count is moved to the point where it just does not, which
-// leaves the result unchanged. A single formula therefore covers all cases.
+// The cost of a node by the Eikonal equation |grad T| = extinction, with Godunov's upwind differences: the
+// T with sum over the axes of max(T - least, 0)^2 = slowness^2. Measured from the least of the three costs,
+// in units of the slowness, the radicands lie between 1 and 3: nothing cancels or overflows.
 // Returns: T, at most least + slowness and at most unreached; unreached if all neighbours are.
 // Units: none.
-// Domain: least, the lesser cost of the two neighbours on each axis, in [0, 1e30]; slowness,
-//   extinction times spacing, 0 or in [1e-30, 1e15].
+// Domain: least, the lesser cost of the two neighbours on each axis, in [0, 1e30]; slowness, extinction
+//   times spacing, 0 or in [1e-30, 1e15].
 // Outside: a slowness below 2^-126 counts as 0 or as itself.
 // Accuracy: lavapipe 4 ulp; portable 13 ulp; order kept
 fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {

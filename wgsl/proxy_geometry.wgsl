@@ -67,8 +67,11 @@ fn proxy_geometry_image(centre: vec3f, position: vec3f) -> vec3f {
 // Units: lengths in, lengths out.
 // Domain: any, up to 1e37.
 // Outside: overflows beyond.
-// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
-fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: vec3f, position_third: vec3f) -> ProxyGeometryPlane {
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp;
+//   portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+fn proxy_geometry_plane(
+    centre: vec3f, position_first: vec3f, position_second: vec3f, position_third: vec3f
+) -> ProxyGeometryPlane {
     return ProxyGeometryPlane(
         proxy_geometry_image(centre, position_first),
         position_first - position_second,
@@ -76,14 +79,11 @@ fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: v
     );
 }
 
-// Unit normal of a triangle, pointing to the side from which its vertices run counter-clockwise. It
-// is the cross product of the two shortest edges: each is as exact as its own ends, whereas two
-// long edges that differ by a short third one have lost that difference if their common end is far
-// from the origin. The edges are first scaled to size 1, because their cross product and its square
-// leave the range of f32 for triangles of size 1e-10 and of 1e10. One edge is crossed with the
-// difference of the two, which is exact if they are nearly parallel, so slivers keep their digits.
-// Returns: unit normal; zero for a degenerate triangle, that is, if the cross product of the scaled
-//   edges has a square below 1.2e-38.
+// Unit normal of a triangle, to the side from which its vertices run counter-clockwise: the cross
+// product of the two shortest edges, scaled to size 1. One is crossed with the difference of the two,
+// which is exact if they are nearly parallel.
+// Returns: unit normal; zero for a degenerate triangle, where the scaled edges' cross product has a
+//   square below 1.2e-38.
 // Units: lengths in, none out.
 // Domain: edges in [1e-30, 1e30], sine of the angle between the two shortest edges at least 1e-6.
 // Outside: finite; zero or ill-conditioned.
@@ -125,7 +125,8 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
 // Units: lengths; `direction` and `normal` are unit vectors.
 // Domain: |direction| = |normal| = 1, positions up to 1e30.
 // Outside: for positions beyond, overflows.
-// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward; portable point 8 ulp + 7 backward, distance 9 ulp + 7 backward, hit 7 backward
+// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward;
+//   portable point 8 ulp + 7 backward, distance 9 ulp + 7 backward, hit 7 backward
 fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
     let slope = dot(normal, direction);
     let height = dot(normal, plane_point - position);
@@ -136,11 +137,10 @@ fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3
     return ProxyGeometryHit(position + distance * direction, distance, true);
 }
 
-// Lattice coordinates of a point of plane P: point = origin + x edge_first + y edge_second. They
-// are computed from cross products, which keep their digits on slivers, where the usual Gram
-// determinant cancels. Everything is scaled by the longest edge to avoid overflow.
-// Returns: the two coordinates; zero for a degenerate triangle
-//   (|edge_first × edge_second| below 2^-18 of the longest edge squared).
+// Lattice coordinates of a point of plane P: point = origin + x edge_first + y edge_second. They come
+// from cross products, which keep their digits on slivers, scaled by the longest edge.
+// Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-18
+//   of the longest edge squared).
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-27, 1e27], distance of the point at most 100 times that size,
 //   sine of the angle times the ratio of the edges at least 1e-4.
@@ -182,14 +182,15 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     return ProxyGeometryCell(vec2i(corner), turned);
 }
 
-// The vertices of a tile, each computed from its own lattice position, so no error accumulates from
-// tile to tile. Tiles share a vertex to the last bit if the device rounds equal expressions alike,
-// and within the bounds below on every device; nothing relies on more.
+// The vertices of a tile, each from its own lattice position, so no error accumulates. Tiles share a vertex to
+// the last bit if the device rounds equal expressions alike, else within the bounds; nothing relies on more.
 // Returns: ProxyGeometryFacet.
 // Units: lengths.
 // Domain: size of the triangle in [1e-27, 1e27], at most 100 steps.
 // Outside: exact steps up to 2^24; overflows beyond 1e37.
-// Accuracy: lavapipe vertex_first 2 ulp + 2 backward, vertex_second 2 ulp + 2 backward, vertex_third 2 ulp + 2 backward; portable vertex_first 3 ulp + 4 backward, vertex_second 3 ulp + 4 backward, vertex_third 3 ulp + 4 backward
+// Accuracy: lavapipe vertex_first 2 ulp + 2 backward, vertex_second 2 ulp + 2 backward,
+//   vertex_third 2 ulp + 2 backward;
+//   portable vertex_first 3 ulp + 4 backward, vertex_second 3 ulp + 4 backward, vertex_third 3 ulp + 4 backward
 fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.
     let corner = vec2f(cell.steps) + select(0.0f, 1.0f, cell.turned);
@@ -209,7 +210,9 @@ fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> P
 // Domain: |direction| = 1, distance between centroid and centre 0 or in [1e-30, 1e30].
 // Outside: overflows beyond.
 // Accuracy: lavapipe 6 ulp + 5 backward; portable 10 ulp + 7 backward; order kept
-fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f) -> vec3f {
+fn proxy_geometry_facet_normal(
+    centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f
+) -> vec3f {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0f;
     let size = max(max(abs(to_centre.x), abs(to_centre.y)), abs(to_centre.z));
     if (size < 1.2e-38f) {
@@ -227,7 +230,8 @@ fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second
 // Units: lengths.
 // Domain: any, up to 1e37.
 // Outside: overflows beyond.
-// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp;
+//   portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
 fn proxy_geometry_next_plane(centre: vec3f, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
     return proxy_geometry_plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third);
 }

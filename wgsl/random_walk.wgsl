@@ -1,4 +1,4 @@
-// random_walk: random walks of light in a scattering medium: random numbers, free paths, delta tracking, phase function, boundary.
+// random_walk: walks of light in a scattering medium: random numbers, free paths, tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash b541375428cc2ca8
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
@@ -223,17 +223,15 @@ fn random_walk_isotropic(u: vec2f) -> vec3f {
     return vec3f(radius * around.x, radius * around.y, 1.0f - 2.0f * v);
 }
 
-// The path of light at a smooth dielectric boundary. It is reflected with the probability of
-// Fresnel's reflectance for unpolarised light, always under total internal reflection, and
-// refracted otherwise. Reflectance and refraction are those of the modules fresnel and refraction,
-// computed from one root.
+// The path of light at a smooth dielectric boundary, reflected with the probability of Fresnel's reflectance for
+// unpolarised light, else refracted. Both are those of the modules fresnel and refraction, from one root.
 // Returns: RandomWalkCrossing.
-// Units: none; `relative_index` is n_transmitted / n_incident, `normal` is on the side that the
-//   light comes from.
-// Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4], u in [0,
-//   1). Light always crosses for relative_index = 1.
+// Units: none; `relative_index` is n_transmitted / n_incident, `normal` is on the side that the light comes from.
+// Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4], u in [0, 1). For
+//   relative_index = 1 light always crosses.
 // Outside: a normal that faces away from the light counts as grazing: finite, but no unit vector.
-// Accuracy: lavapipe direction 12 ulp + 24 backward, crosses 24 backward; portable direction 24 ulp + 160 backward, crosses 160 backward
+// Accuracy: lavapipe direction 12 ulp + 24 backward, crosses 24 backward;
+//   portable direction 24 ulp + 160 backward, crosses 160 backward
 fn random_walk_boundary(incident: vec3f, normal: vec3f, relative_index: f32, u: f32) -> RandomWalkCrossing {
     // n^2 - 1 in two factors: the difference of two nearby floats is exact, the difference of their
     // squares is not.

@@ -1,4 +1,4 @@
-// ray_footprint: which part of a pixel shows what lies beyond the edge of a facet inside a stone, and which neighbours show the same.
+// ray_footprint: the part of a pixel that shows what lies beyond a facet's edge, and the neighbours that show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash e2be3dedb638e648
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
@@ -22,10 +22,8 @@
 //
 // A second pass then mixes the four neighbours in, by these shares: ray_footprint_mix.
 
-// How much wider an offset is after a way inside than on the facet that the eye sees: in place of a
-// footprint of the direction, one number for both axes and all reflections. Across the plane of
-// incidence it is exact. In that plane, rays spread less, by the squared cosine of the angle of
-// incidence over that of refraction.
+// How much wider an offset is after a way inside than on the facet that the eye sees, as one number for
+// both axes and all reflections. Across the plane of incidence it is exact; in that plane rays spread less.
 // Returns: factor, at least 1.
 // Units: `distance` of the eye from the facet and `travelled`, the way inside, in any common unit of
 //   length; `relative_index` is a ratio.
@@ -36,19 +34,18 @@ fn ray_footprint_growth(distance: f32, travelled: f32, relative_index: f32) -> f
     return 1.0f + travelled / (relative_index * distance);
 }
 
-// The edge at which the plane that a ray meets gives way to the runner-up, as a line in the pixel.
-// The difference of the distances to the two planes, times both slopes of the ray towards them, is
-// linear in the pixel. Nothing is divided: of a facet seen edge-on the offset would be infinite.
-// Returns: (f, gx, gy). The runner-up is met where gx x + gy y > f, for x and y in pixels to the
-//   right and down; f / |g| is the distance of the edge in pixels.
-// Units: those of the offsets. `gap` is the distance along the ray from the nearest plane to the
-//   runner-up.
-// Domain: unit vectors; direction . nearest and direction . runner_up in [0, 1], the larger at least
-//   1e-3; gap in [0, 1e4]; offsets `right` and `down` at the point of the hit, up to 1e4.
-// Outside: finite for offsets and a gap up to 2^30 and other vectors up to 2^10; where one slope is
-//   below 0, so is f.
+// The edge at which the plane that a ray meets gives way to the runner-up, as a line in the pixel. Nothing is
+// divided: the difference of the two distances, times both slopes of the ray, is linear in the pixel.
+// Returns: (f, gx, gy): the runner-up is met where gx x + gy y > f, x and y in pixels right and down; the edge is f /
+//   |g| pixels off.
+// Units: those of the offsets. `gap` is the distance along the ray from the nearest plane to the runner-up.
+// Domain: unit vectors; direction . nearest and direction . runner_up in [0, 1], the larger at least 1e-3; gap in [0,
+//   1e4]; offsets `right` and `down` at the point of the hit, up to 1e4.
+// Outside: finite for offsets and a gap up to 2^30 and other vectors up to 2^10; where one slope is below 0, so is f.
 // Accuracy: lavapipe 1 ulp + 8 backward; portable 2 ulp + 16 backward
-fn ray_footprint_edge(direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32) -> vec3f {
+fn ray_footprint_edge(
+    direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32
+) -> vec3f {
     let slope = dot(nearest, direction);
     let slope_runner_up = dot(runner_up, direction);
     // Perpendicular to the ray, so that parts of the offsets along it drop out.

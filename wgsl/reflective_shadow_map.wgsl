@@ -1,4 +1,4 @@
-// reflective_shadow_map: where a light's view puts a point, how much light the surface takes there, and whether something stands before it.
+// reflective_shadow_map: a point in a light's view: its place, the light it takes, and whether something hides it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 33dd68192bad503a
 // Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and
@@ -43,7 +43,8 @@ struct ReflectiveShadowMapBasis {
 // Units: none.
 // Domain: |axis| = 1.
 // Outside: finite for a length up to 1e18; the vectors are neither unit nor square.
-// Accuracy: lavapipe right 4 ulp + 4 backward, up 4 ulp + 4 backward; portable right 16 ulp + 8 backward, up 16 ulp + 8 backward
+// Accuracy: lavapipe right 4 ulp + 4 backward, up 4 ulp + 4 backward;
+//   portable right 16 ulp + 8 backward, up 16 ulp + 8 backward
 fn reflective_shadow_map_basis(axis: vec3f) -> ReflectiveShadowMapBasis {
     let side = select(-1.0f, 1.0f, axis.z >= 0.0f);
     let a = -1.0f / (side + axis.z);
@@ -53,14 +54,13 @@ fn reflective_shadow_map_basis(axis: vec3f) -> ReflectiveShadowMapBasis {
     return ReflectiveShadowMapBasis(right, up);
 }
 
-// The position of a point in a map, in WebGPU's clip coordinates. It is computed from the point's
-// difference from the view's origin, so a scene far from the world's origin has the same map. A
-// matrix that includes the translation would subtract products of large numbers.
+// The position of a point in a map, in WebGPU's clip coordinates, from its difference from the view's
+// origin: a matrix that includes the translation would subtract products of large numbers.
 // Returns: x, y in [-w, w] and z in [0, w] for points that the map covers; w is 1 for a sun and the
 //   depth for a lamp.
 // Units: world units and their quotients.
-// Domain: a view as documented at ReflectiveShadowMapView, extent in [1e-4, 1e4], far - near at
-//   least 1e-4 far; coordinates up to 1e6.
+// Domain: a view as documented at ReflectiveShadowMapView, extent in [1e-4, 1e4], far - near at least
+//   1e-4 far; coordinates up to 1e6.
 // Outside: finite as long as products of coordinates and 1 / extent are.
 // Accuracy: lavapipe 16 ulp + 2 backward; portable 40 ulp + 4 backward
 fn reflective_shadow_map_clip(view: ReflectiveShadowMapView, position: vec3f) -> vec4f {

@@ -48,16 +48,15 @@ fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
     return (excess + cosine * cosine) / (relative_index * relative_index);
 }
 
-// Refracts `incident` at a plane with the normal `normal`, or reflects it if refraction is
-// impossible. Eq. (6) with c = -normal . incident and g = n cos(angle of refraction) = sqrt(m + c²)
-// is r' = (r + (c - g) n) / n. Here c - g is written as -m / (c + g), which does not cancel as
-// n -> 1.
+// Refracts `incident` at a plane with the normal `normal`, or reflects it if refraction is impossible:
+// eq. (6), with its difference c - g written as -m / (c + g), which does not cancel as n -> 1.
 // Returns: RefractionHit; `direction` is a unit vector in both branches.
 // Units: none; unit vectors and a ratio.
 // Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4].
-// Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0):
-//   finite, but not unit.
-// Accuracy: lavapipe direction 88 ulp + 8 backward, total 8 backward; portable direction 148 ulp + 16 backward, total 16 backward
+// Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0): finite,
+//   but not unit.
+// Accuracy: lavapipe direction 88 ulp + 8 backward, total 8 backward;
+//   portable direction 148 ulp + 16 backward, total 16 backward
 fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
     let cosine = max(-dot(normal, incident), 0.0f);
     let excess = (relative_index - 1.0f) * (relative_index + 1.0f);

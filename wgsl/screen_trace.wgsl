@@ -83,12 +83,11 @@ fn screen_trace_inverse_w(depth: f32, scale: f32, offset: f32) -> f32 {
 }
 
 // Whether a ray has met a surface on a step: whether it ends behind the front that the depth buffer
-// shows there, and any part of the step lies before the body's back. Steps may be long: a ray
-// that ends in front of a surface has not met it, however deep it was before. Nothing is divided, so
-// that infinity, an inverse of 0, is no case of its own.
+// shows there, and any part of the step lies before the body's back. Nothing is divided, so that
+// infinity, an inverse of 0, is no case of its own.
 // Returns: whether it does.
-// Units: `before`, `here` and `surface` are 1 / w of the ray at the step's two ends and of the
-//   surface at its end; `thickness` of the body is in units of w.
+// Units: `before`, `here` and `surface` are 1 / w of the ray at the step's two ends and of the surface
+//   at its end; `thickness` of the body is in units of w.
 // Domain: inverses 0 or in [1e-6, 1e6], thickness 0 or in [1e-6, 1e6].
 // Outside: with a thickness below 0, a body thinner than its own front, which a ray may miss.
 // Accuracy: lavapipe 3 backward; portable 6 backward

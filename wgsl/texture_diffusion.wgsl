@@ -1,4 +1,4 @@
-// texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
+// texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance in its own texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 990283e867d9d522
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
@@ -64,14 +64,13 @@ fn texture_diffusion_stretch(position_x: vec3f, position_y: vec3f) -> vec2f {
     return vec2f(length(position_x), length(position_y));
 }
 
-// Standard deviation of the Gaussian at a texel. If a texel has no extent, as at a sphere's pole,
-// the Gaussian covers all texels that are one point there: its width is `widest`. Half the texture
-// is enough for that.
-// Returns: width in [0, widest]; 0, which is no blur, if sigma0 is 0, negative or a NaN;
-//   sigma0 / 1e18 if stretch is infinite.
+// Standard deviation of the Gaussian at a texel. If a texel has no extent, as at a sphere's pole, the
+// Gaussian covers all texels that are one point there: `widest`, for which half the texture is enough.
+// Returns: width in [0, widest]; 0, which is no blur, if sigma0 is 0, negative or a NaN; sigma0 / 1e18
+//   if stretch is infinite.
 // Units: texels; sigma0 in a length, stretch in lengths per texel.
-// Domain: any bits for sigma0 and stretch, magnitudes count as at most 1e18, a NaN stretch as 0;
-//   widest in [0, 1e6].
+// Domain: any bits for sigma0 and stretch, magnitudes count as at most 1e18, a NaN stretch as 0; widest
+//   in [0, 1e6].
 // Outside: a negative widest counts as 0.
 // Accuracy: lavapipe 1 ulp; portable 3 ulp
 fn texture_diffusion_width(sigma0: f32, stretch: f32, widest: f32) -> f32 {
@@ -140,10 +139,9 @@ struct TextureDiffusionTap {
     weight: vec3f,
 }
 
-// Position and weights of a pair of taps. With t = index / pairs they lie at
-// x = reach (1 - bend) t / (1 - bend t^2): evenly spaced in the middle, as close as the narrowest
-// channel needs, and ever farther apart outside. The weight is the Gaussian times dx/dt, which
-// makes the sum an integral over t.
+// Position and weights of a pair of taps. With t = index / pairs they lie at x = reach (1 - bend) t /
+// (1 - bend t^2): evenly in the middle, ever farther apart outside. The weight is the Gaussian times
+// dx/dt, for an integral over t.
 // Returns: offset in [0, 3.4]; weights at least 0, and 1 for index 0; for any other index, 0 in a
 //   channel that does not scatter.
 // Units: standard deviations of the widest channel.

@@ -1,4 +1,4 @@
-// voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
+// voxelization: a closed mesh as voxels: where a triangle crosses a column, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Version: 0.2.0, hash 56a697ee610a16de
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia
@@ -155,7 +155,7 @@ fn voxelization_edge(from_point: vec2i, to_point: vec2i) -> VoxelizationEdge {
 
 // The crossing of a triangle and a column, which exists if all three edges turn about the column
 // the same way. The decision is exact for the corners and the column moved to their nearest lattice
-// points, by at most 2^-15 voxels in y and in z: no shared edge is counted twice or missed, on any
+// points, by at most 2^-15 voxels in y and in z. No shared edge is counted twice or missed, on any
 // device. A triangle without area on the lattice is never crossed, so no sum of weights is 0.
 // Returns: VoxelizationColumn; `depth` within the triangle's extent.
 // Units: voxels; `column` is y and z of the column.
@@ -242,14 +242,9 @@ fn voxelization_range(low: f32, high: f32, cells: u32) -> vec2u {
     return vec2u(min(u32(clamp(low, 0.0f, most)), end), end);
 }
 
-// The interval along x in which a triangle's plane passes over the square of a column, `corner` to
-// `corner` + 1 in y and z, cut off by the triangle's own extent. Every voxel that
-// voxelization_overlaps finds meets this interval, so no other voxel need be tested.
-// Returns: low and high; low > high if the plane misses the extent. The absolute error is that of a
-//   half length of 64, subtracted from a value as large: a product, a quotient and a sum, 3 units
-//   of 2^-24 if each is rounded to nearest. By WGSL's guarantees the half length has an error of e
-//   + 2.5 e + e with e = 2^-23, and the value that it is subtracted from another 2.5 e from its
-//   quotient: 7 e of 64.
+// The interval along x in which a triangle's plane passes over the square of a column, `corner` to `corner` + 1
+// in y and z, cut off by the triangle's own extent. Every voxel that voxelization_overlaps finds meets it.
+// Returns: low and high; low > high if the plane misses the extent.
 // Units: voxels.
 // Domain: coordinates up to 1e9.
 // Outside: finite for coordinates from 1e-6 to 1e11, or 0.
@@ -272,14 +267,13 @@ fn voxelization_span(a: vec3f, b: vec3f, c: vec3f, corner: vec2f) -> vec2f {
     return vec2f(max(extent.x, middle - half), min(extent.y, middle + half));
 }
 
-// Whether a triangle touches a voxel, including its faces, edges and corners, or comes within the
-// margin of it. The test uses separating axes: those of the voxel, the cross products of its axes
-// and the triangle's edges, and the triangle's normal.
-// Returns: never false if they touch; true only if they are within a few margins of each other, or
-//   for a thin triangle within its thickness.
+// Whether a triangle touches a voxel, its faces, edges and corners included, or comes within the margin of it.
+// Separating axes: the voxel's, the triangle's normal, and the cross products of voxel's axes and triangle's edges.
+// Returns: never false if they touch; true only if they are within a few margins of each other, or for
+//   a thin triangle within its thickness.
 // Units: voxels; `corner` is the voxel's corner with the least coordinates.
-// Domain: coordinates up to 1e9. The accuracy is for triangles at least 1/8 as thick as long, and
-//   large enough for f32 to resolve at their distance from the origin.
+// Domain: coordinates up to 1e9. The accuracy is for triangles at least 1/8 as thick as long, and large
+//   enough for f32 to resolve at their distance from the origin.
 // Outside: as long as products of three coordinates are finite.
 // Accuracy: lavapipe 128 backward; portable 128 backward
 fn voxelization_overlaps(a: vec3f, b: vec3f, c: vec3f, corner: vec3f) -> bool {

@@ -1,4 +1,4 @@
-// bounds_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/bounds_trace.wgsl, and use its structs and functions.
+// bounds_trace: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // bounds_trace_cuboid by the slab test as it is printed, divided by the direction as it is.

@@ -1,4 +1,4 @@
-// bvh_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/bvh_trace.wgsl, and use its structs and functions.
+// bvh_trace: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The usual epsilon, used by bvh_trace_triangle_naive.
@@ -23,14 +23,13 @@ fn bvh_trace_box_naive(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f3
     return BvhTraceBox(entry, entry <= exit);
 }
 
-// The usual triangle test, Möller and Trumbore's, with an epsilon for the determinant and for the
-// distance. Kept to show where it fails: the signs at an edge are rounded differently for its two
-// triangles, so both may reject a ray between them; and the same epsilon serves as a length and as
-// an area, so it is right for only one size of mesh.
+// Möller and Trumbore's triangle test, with an epsilon for determinant and distance. The signs at an
+// edge are rounded differently for its two triangles, so both may reject a ray; one epsilon, a length
+// and an area, fits one size of mesh.
 // Returns: BvhTraceHit.
 // Units: those of the positions.
-// Domain: edges in [0.01, 4]; normal . direction at least 0.1; the ray at least 1/100 of the
-//   triangle's size away from its edges.
+// Domain: edges in [0.01, 4]; normal . direction at least 0.1; the ray at least 1/100 of the triangle's
+//   size away from its edges.
 // Outside: as the formula gives.
 // Accuracy: naive
 fn bvh_trace_triangle_naive(

@@ -1,4 +1,4 @@
-// cdrf: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/cdrf.wgsl, and use its structs and functions.
+// cdrf: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // cdrf_sigma as the plain product, as printed in the paper.
@@ -64,8 +64,7 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
     return cdrf_accurate(cos(acos(cosine)), sigma);
 }
 
-// cdrf_texture_coordinates without the half texel: every lookup is shifted towards the middle of
-// the table.
+// cdrf_texture_coordinates without the half texel: lookups shift towards the table's middle.
 // Returns: `coordinates`, unchanged.
 // Units: fractions of the texture.
 // Domain: coordinates in [0, 1].

@@ -1,4 +1,4 @@
-// closest_point: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/closest_point.wgsl, and use its structs and functions.
+// closest_point: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The direction from the built-in `normalize`.
@@ -59,11 +59,8 @@ fn closest_point_fallback_naive(position_a: vec3f, position_b: vec3f, position_c
 }
 
 // The paper's centre, eq. (4), (5), with eq. (3) corrected: for each vertex, the point of its line
-// closest to the next vertex's line; the three points are averaged with the sines of the angles
-// between the normals as weights. Kept for comparison: as the normals become parallel, weight times
-// parameter tends to a limit that depends on the direction of approach, while the sum of the
-// weights vanishes, so the point runs off to infinity. Only one of each pair's two points counts,
-// so the result depends on the winding.
+// closest to the next vertex's line, averaged with the sines between the normals as weights. As normals
+// become parallel it runs off to infinity, and it depends on the winding: docs/closest_point.md.
 // Returns: o; closest_point_fallback if all three normals are parallel.
 // Units: those of the positions.
 // Domain: unit normals at angles in [0.3, 2.8] from each other.
@@ -112,8 +109,11 @@ fn closest_point_centre_literal(
         length(cross(normal_b, normal_c)),
         length(cross(normal_c, normal_a)),
     );
-    let point_a = position_a + normal_a * closest_point_parameters_literal(position_a, normal_a, position_b, normal_b).x;
-    let point_b = position_b + normal_b * closest_point_parameters_literal(position_b, normal_b, position_c, normal_c).x;
-    let point_c = position_c + normal_c * closest_point_parameters_literal(position_c, normal_c, position_a, normal_a).x;
+    let point_a = position_a
+        + normal_a * closest_point_parameters_literal(position_a, normal_a, position_b, normal_b).x;
+    let point_b = position_b
+        + normal_b * closest_point_parameters_literal(position_b, normal_b, position_c, normal_c).x;
+    let point_c = position_c
+        + normal_c * closest_point_parameters_literal(position_c, normal_c, position_a, normal_a).x;
     return (weight.x * point_a + weight.y * point_b + weight.z * point_c) / (weight.x + weight.y + weight.z);
 }

@@ -1,4 +1,4 @@
-// convex_walk: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/convex_walk.wgsl, and use its structs and functions.
+// convex_walk: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // convex_walk_square with sign() for the side on which a point lies.

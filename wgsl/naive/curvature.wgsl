@@ -1,4 +1,4 @@
-// curvature: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/curvature.wgsl, and use its structs and functions.
+// curvature: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The result of dpdx(normalize(normal)): the difference of two neighbours' unit normals.

@@ -1,4 +1,4 @@
-// diffusion: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/diffusion.wgsl, and use its structs and functions.
+// diffusion: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The face's conductance with the harmonic mean of the coefficients.
@@ -115,7 +115,9 @@ fn diffusion_slab_naive(thickness: f32, gamma: f32, milne: f32) -> f32 {
 //   [0.3, 2], angle in [0.8, 1.1].
 // Outside: infinite factors where kappa m0 = 1; 0 / 0 for a gap or a cosine of 0.
 // Accuracy: naive
-fn diffusion_local_naive(cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32) -> f32 {
+fn diffusion_local_naive(
+    cosine_eye: f32, cosine_light: f32, law: f32, gamma: f32, milne: f32, depth: f32, gap: f32, angle: f32
+) -> f32 {
     let m = cosine_eye;
     let m0 = cosine_light;
     let z = milne;

@@ -1,4 +1,4 @@
-// dispersion: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/dispersion.wgsl, and use its structs and functions.
+// dispersion: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The derivative of refraction in its usual form from eq. (6), with eta = 1 / n. Kept for
@@ -36,16 +36,14 @@ fn dispersion_paper_enter_naive(direction: vec3f, refracted: vec3f) -> vec3f {
     return normalize(refracted - direction);
 }
 
-// Eq. (11) for a refraction: both the ray and a ray turned towards the spread are refracted, and
-// their difference is normalized. The length of the second ray is restored to first order, which is
-// complete in f32 for epsilon up to 2^-12. The first ray chooses between refraction and reflection.
-// If the second would be totally reflected, it is taken along the surface.
+// Eq. (11) for a refraction: the normalized difference of the refracted ray and one turned towards the spread, its
+// length restored to first order. The first chooses the branch; the second, totally reflected, follows the surface.
 // Returns: unit vector; 0 if the difference is 0, as for a spread of 0.
 // Units: none; unit vectors and a ratio.
-// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in
-//   [1/4, 4], epsilon in [1e-4, 1e-3].
-// Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence
-//   and near relative_index = 1.
+// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in [1/4, 4], epsilon
+//   in [1e-4, 1e-3].
+// Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence and near
+//   relative_index = 1.
 // Accuracy: naive
 fn dispersion_paper_refract(
     direction: vec3f,
@@ -108,15 +106,13 @@ fn dispersion_paper_reflect(direction: vec3f, spread: vec3f, normal: vec3f, epsi
     return difference / sqrt(squared);
 }
 
-// Eq. (12): the direction at another frequency. It contains a length, the path through the stone,
-// but no index of refraction, so the same stone modelled in other units disperses differently.
-// Returns: unit direction. `strength` is our addition: 1 is the paper's value; other values are
-//   fitted to a material and to the size of a model.
-// Units: `distance` in the model's units, from the point where the ray enters to the point where it
-//   leaves; `frequency_ratio` is lambda / lambda_0 in the paper, where these are frequencies:
-//   wavelength_0 / wavelength.
-// Domain: |direction| = 1, |spread| = 1 or 0, |spread . direction| <= 3/4, |strength distance
-//   (frequency_ratio - 1)| up to 1e18.
+// Eq. (12): the direction at another frequency. It contains a length, the path through the stone, but no index of
+// refraction, so the same stone modelled in other units disperses differently.
+// Returns: unit direction; `strength`, our addition, is 1 in the paper; others are fitted to material and model size.
+// Units: `distance` in the model's units, from where the ray enters to where it leaves; `frequency_ratio` is the
+//   paper's lambda / lambda_0, which are frequencies: wavelength_0 / wavelength.
+// Domain: |direction| = 1, |spread| = 1 or 0, |spread . direction| <= 3/4, |strength distance (frequency_ratio - 1)|
+//   up to 1e18.
 // Outside: not a number where the sum is 0.
 // Accuracy: naive
 fn dispersion_paper_direction(

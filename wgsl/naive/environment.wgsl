@@ -1,4 +1,4 @@
-// environment: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/environment.wgsl, and use its structs and functions.
+// environment: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // environment_uv_from_direction with normalize and acos, the usual form: acos amplifies the

@@ -1,4 +1,4 @@
-// fresnel: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/fresnel.wgsl, and use its structs and functions.
+// fresnel: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The reflectance of a dielectric as in textbooks and most shaders: quotients of cosines, with the

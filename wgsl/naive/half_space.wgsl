@@ -1,4 +1,4 @@
-// half_space: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/half_space.wgsl, and use its structs and functions.
+// half_space: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // Gamma by way of the similar albedo, as similarity is printed.
@@ -68,7 +68,8 @@ fn half_space_edge_naive(relative_index: f32) -> f32 {
     let fourth = square * square;
     let ratio = (n - 1.0f) / (n + 1.0f);
     let plain = 0.5f + (n - 1.0f) * (3.0f * n + 1.0f) / (6.0f * (n + 1.0f) * (n + 1.0f));
-    let polarised = square * (square - 1.0f) * (square - 1.0f) / ((square + 1.0f) * (square + 1.0f) * (square + 1.0f)) * log(ratio);
+    let polarised = square * (square - 1.0f) * (square - 1.0f)
+        / ((square + 1.0f) * (square + 1.0f) * (square + 1.0f)) * log(ratio);
     let rational = 2.0f * n * square * (square + 2.0f * n - 1.0f) / ((square + 1.0f) * (fourth - 1.0f));
     let rest = 8.0f * fourth * (fourth + 1.0f) / ((square + 1.0f) * (fourth - 1.0f) * (fourth - 1.0f)) * log(n);
     let outside = plain + polarised - rational + rest;

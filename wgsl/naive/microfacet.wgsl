@@ -1,4 +1,4 @@
-// microfacet: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/microfacet.wgsl, and use its structs and functions.
+// microfacet: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The usual form of the distribution, from the cosine alone. Kept to show where it fails: close to

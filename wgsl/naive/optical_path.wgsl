@@ -1,4 +1,4 @@
-// optical_path: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/optical_path.wgsl, and use its structs and functions.
+// optical_path: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The cost of an edge as in the paper: the extinction, whatever the edge's length. The depth of a

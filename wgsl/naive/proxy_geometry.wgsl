@@ -1,4 +1,4 @@
-// proxy_geometry: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/proxy_geometry.wgsl, and use its structs and functions.
+// proxy_geometry: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The straightforward form of the normal: normalize(cross).
@@ -18,7 +18,9 @@ fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3
 // Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind
 //   it.
 // Accuracy: naive
-fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
+fn proxy_geometry_intersect_naive(
+    position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f
+) -> ProxyGeometryHit {
     let distance = dot(normal, plane_point - position) / dot(normal, direction);
     return ProxyGeometryHit(position + distance * direction, distance, true);
 }
@@ -63,6 +65,8 @@ fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
 // Domain: distance between centroid and centre in [1e-15, 1e15].
 // Outside: zero, infinite or not a number where the square of the distance leaves the range of f32.
 // Accuracy: naive
-fn proxy_geometry_facet_normal_naive(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f) -> vec3f {
+fn proxy_geometry_facet_normal_naive(
+    centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f
+) -> vec3f {
     return normalize(centre - (vertex_first + vertex_second + vertex_third) / 3.0f);
 }

@@ -1,4 +1,4 @@
-// random_walk: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/random_walk.wgsl, and use its structs and functions.
+// random_walk: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The free path by the built-in logarithm, as usually written. Kept to show where it fails: below

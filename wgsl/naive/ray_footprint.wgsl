@@ -1,4 +1,4 @@
-// ray_footprint: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/ray_footprint.wgsl, and use its structs and functions.
+// ray_footprint: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // ray_footprint_edge from the offsets on the two planes, as ray differentials are transferred to a
@@ -10,7 +10,9 @@
 //   ray, a gap, and offsets towards one of them.
 // Outside: as the formula gives.
 // Accuracy: naive
-fn ray_footprint_edge_naive(direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32) -> vec3f {
+fn ray_footprint_edge_naive(
+    direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32
+) -> vec3f {
     let slope = dot(nearest, direction);
     let slope_runner_up = dot(runner_up, direction);
     let sooner = vec2f(dot(nearest, right), dot(nearest, down)) / slope;

@@ -1,4 +1,4 @@
-// reflective_shadow_map: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/reflective_shadow_map.wgsl, and use its structs and functions.
+// reflective_shadow_map: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The axes in their usual form, by a cross product with the vertical. Kept to show where it fails:
@@ -15,7 +15,7 @@ fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
 
 // The usual test: the distance along the light by which the seen point is closer to the light than
 // the point itself. Kept to show where it fails: on a plane at grazing incidence, the neighbouring
-// texel is closer by almost its own width, so no single bias works for both the plane and the
+// texel is closer by almost its own width. So no single bias works for both the plane and the
 // shadow of a thin body.
 // Returns: distance along the light.
 // Units: world units.

@@ -1,4 +1,4 @@
-// refraction: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/refraction.wgsl, and use its structs and functions.
+// refraction: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The radicand as printed in eq. (6), with eta = 1 / n.

@@ -1,4 +1,4 @@
-// screen_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/screen_trace.wgsl, and use its structs and functions.
+// screen_trace: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // screen_trace_distance by equal distances: what a loop with a constant step along the ray takes.

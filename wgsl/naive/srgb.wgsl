@@ -1,4 +1,4 @@
-// srgb: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/srgb.wgsl, and use its structs and functions.
+// srgb: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // Encodes with the power piece alone and without a clamp, as much code does to avoid the branch.

@@ -1,4 +1,4 @@
-// texture_diffusion: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/texture_diffusion.wgsl, and use its structs and functions.
+// texture_diffusion: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // texture_diffusion_clip with y as in OpenGL, which counts texels from the bottom.

@@ -1,4 +1,4 @@
-// veins: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/veins.wgsl, and use its structs and functions.
+// veins: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // The cell by conversion to integers, as usually written. Kept to show where it fails: conversion

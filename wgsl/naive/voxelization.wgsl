@@ -1,4 +1,4 @@
-// voxelization: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/voxelization.wgsl, and use its structs and functions.
+// voxelization: forms found elsewhere, kept to show where they fail. They follow the module and use its names.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // voxelization_column in floats, as usually written: each triangle counts the columns on its edges,

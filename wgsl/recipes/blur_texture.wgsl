@@ -103,5 +103,8 @@ fn blur_texture_dilate(@builtin(position) position: vec4f) -> @location(0) vec4f
             }
         }
     }
-    return vec4f(texture_diffusion_half(texture_diffusion_normalize(sum, vec3f(coverage))), select(0.0f, 1.0f, coverage > 0.0f));
+    return vec4f(
+        texture_diffusion_half(texture_diffusion_normalize(sum, vec3f(coverage))),
+        select(0.0f, 1.0f, coverage > 0.0f)
+    );
 }

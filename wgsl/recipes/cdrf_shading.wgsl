@@ -1,9 +1,10 @@
-// cdrf_shading: skin, wax or jade by curvature-dependent reflectance, in one draw call, under lights and an environment.
+// cdrf_shading: skin, wax or jade by curvature-dependent reflectance in one draw call, under lights and an environment.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, diffusion, environment, fresnel, half_space, microfacet, reflective_shadow_map
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow, stone_shadow, harmonics, reflection, scattering_law, material_textures
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow
+// parts: stone_shadow, harmonics, reflection, scattering_law, material_textures
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -25,8 +26,8 @@ override SPREAD_FORM: u32 = 0u;
 override CURVATURE_FORM: u32 = 0u;
 // A second lobe of the highlights, as skin has. Called for by extras.lapidary.secondLobe, where there are highlights.
 override EFFECT_SECOND_LOBE: bool = false;
-// Some of the light does not enter, and leaves the surface as Lambert's law says. Called for by a diffuseTransmissionFactor between 0
-// and 1, or a diffuseTransmissionTexture, on a body that cdrf draws.
+// Some of the light does not enter, and leaves the surface as Lambert's law says. Called for by a
+// diffuseTransmissionFactor between 0 and 1, or a diffuseTransmissionTexture, on a body that cdrf draws.
 override EFFECT_PARTIAL_TRANSMISSION: bool = false;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
 // texture_irradiance and blur_texture.
@@ -197,8 +198,8 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     );
 }
 
-// The derivatives at a pixel, the curvature that follows from them, the factor of the lengths by which light spreads, and the
-// share of the light that enters.
+// The derivatives at a pixel, the curvature that follows from them, the factor of the lengths by which light
+// spreads, and the share of the light that enters.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
@@ -310,7 +311,8 @@ fn cdrf_drifted(cosine: f32, drift: CdrfDrift) -> f32 {
 // Looks up the table through its sampler.
 fn cdrf_sampled(cosine: f32, sigma: f32) -> vec3f {
     let coordinates = cdrf_table_coordinates(cosine, sigma);
-    return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
+    return textureSampleLevel(table, table_sampler,
+        cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
 }
 
 // The reflectance towards one light, per channel, of each channel's cosine.
@@ -345,12 +347,24 @@ fn cdrf_reflectance(cosines: vec3f, curvature: f32) -> vec3f {
         return vec3f(cdrf_cheap(cosines.x, sigma.x), cdrf_cheap(cosines.y, sigma.y), cdrf_cheap(cosines.z, sigma.z));
     }
     if (CDRF_FORM == CDRF_FORM_QUADRATURE) {
-        return vec3f(cdrf_quadrature(cosines.x, sigma.x), cdrf_quadrature(cosines.y, sigma.y), cdrf_quadrature(cosines.z, sigma.z));
+        return vec3f(
+            cdrf_quadrature(cosines.x, sigma.x),
+            cdrf_quadrature(cosines.y, sigma.y),
+            cdrf_quadrature(cosines.z, sigma.z)
+        );
     }
     if (CDRF_FORM == CDRF_FORM_SPHERICAL) {
-        return vec3f(cdrf_spherical(cosines.x, sigma.x), cdrf_spherical(cosines.y, sigma.y), cdrf_spherical(cosines.z, sigma.z));
+        return vec3f(
+            cdrf_spherical(cosines.x, sigma.x),
+            cdrf_spherical(cosines.y, sigma.y),
+            cdrf_spherical(cosines.z, sigma.z)
+        );
     }
-    return vec3f(cdrf_accurate(cosines.x, sigma.x), cdrf_accurate(cosines.y, sigma.y), cdrf_accurate(cosines.z, sigma.z));
+    return vec3f(
+        cdrf_accurate(cosines.x, sigma.x),
+        cdrf_accurate(cosines.y, sigma.y),
+        cdrf_accurate(cosines.z, sigma.z)
+    );
     //+cdrf }
 }
 
@@ -384,19 +398,23 @@ fn cdrf_entered(reflectance: vec3f, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
-// How far up the light what a bent surface spreads to a point can have entered. On a sphere, light that arrives past the
-// terminator at a cosine -c has entered at most 2 c radii up the light, and it arrives hardly farther past it than three widths.
+// How far up the light what a bent surface spreads to a point can have entered. On a sphere, light that arrives
+// past the terminator at a cosine -c has entered at most 2 c radii up the light, and it arrives hardly farther
+// past it than three widths.
 fn cdrf_reach(cosine: f32, curvature: f32, spread: f32) -> vec3f {
     let sigma = cdrf_sigmas(spread);
     let angle = 2.0f * (min(vec3f(abs(cosine)), 3.0f * sigma) + sigma);
     return max(angle / max(abs(cdrf_finite(curvature)), 1e-12f), vec3f(1e-6f));
 }
 
-// Reflectance under a light that enters around the point or behind it, as its map says: what enters around is spread, as far
-// as no other part of a body has taken it, and what enters behind comes through the body as through a slab. The larger one
-// counts: the spread was fitted to whole spheres, through which light comes as well. Where the light falls on the point itself its
-// way is short, and nearly nothing collides on it. Through a bent body light also gets lost sideways, as if its way were longer.
-fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, shadow: TranslucentShadow, cosine_eye: f32) -> vec3f {
+// Reflectance under a light that enters around the point or behind it, as its map says. What enters around is
+// spread, as far as no other part of a body has taken it, and what enters behind comes through the body as
+// through a slab. The larger one counts: the spread was fitted to whole spheres, through which light comes as
+// well. Where the light falls on the point itself its way is short, and nearly nothing collides on it. Through
+// a bent body light also gets lost sideways, as if its way were longer.
+fn cdrf_translucent(
+    reflectance: vec3f, law: vec3f, cosines: vec3f, shadow: TranslucentShadow, cosine_eye: f32
+) -> vec3f {
     let falls = max(cosines, vec3f(0.0f));
     let all = max(reflectance - (vec3f(1.0f) - shadow.visible) * falls, vec3f(0.0f));
     let own = min(all, shadow.visible * falls);
@@ -406,9 +424,12 @@ fn cdrf_translucent(reflectance: vec3f, law: vec3f, cosines: vec3f, shadow: Tran
     }
     let depth = CDRF_LOST_SIDEWAYS * shadow.way / max(material.free_path, vec3f(1e-12f));
     let passed = vec3f(
-        diffusion_slab(depth.x, material.law.gamma.x, material.milne) * scattering_law_passed(shadow.cosine.x, material.law),
-        diffusion_slab(depth.y, material.law.gamma.y, material.milne) * scattering_law_passed(shadow.cosine.y, material.law),
-        diffusion_slab(depth.z, material.law.gamma.z, material.milne) * scattering_law_passed(shadow.cosine.z, material.law),
+        diffusion_slab(depth.x, material.law.gamma.x, material.milne)
+            * scattering_law_passed(shadow.cosine.x, material.law),
+        diffusion_slab(depth.y, material.law.gamma.y, material.milne)
+            * scattering_law_passed(shadow.cosine.y, material.law),
+        diffusion_slab(depth.z, material.law.gamma.z, material.milne)
+            * scattering_law_passed(shadow.cosine.z, material.law),
     );
     let seen = 0.31830987f * material.law.light * scattering_law_inside(cosine_eye, material.law);
     return max(law * spread, shadow.cosine * passed * seen);
@@ -435,7 +456,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         let arrival = light_arrival(lights[index], input.position);
         var curvature = surface.curvature;
         if (CURVATURE_FORM == CURVATURE_FORM_TOWARDS) {
-            curvature = curvature_towards(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction);
+            curvature = curvature_towards(
+                surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction
+            );
         }
         let cosine = dot(normal, arrival.direction);
         var cosines = vec3f(cosine);
@@ -457,7 +480,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         if (EFFECT_TRANSLUCENT_SHADOW) {  //+translucent_shadow
             //+translucent_shadow {
             let reach = cdrf_reach(max(cosines.x, max(cosines.y, cosines.z)), curvature, spread);
-            let shadow = translucent_shadow_of_light(index, input.position, normal, arrival.direction, surface.thickness * material.free_path, reach);
+            let shadow = translucent_shadow_of_light(
+                index, input.position, normal, arrival.direction, surface.thickness * material.free_path, reach
+            );
             var seen = vec3f(1.0f);
             if (EFFECT_HALF_SPACE) {
                 seen = law;
@@ -513,7 +538,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             irradiance *= scattering_law_around(cosine_eye, material.law);
         }
         if (EFFECT_PARTIAL_TRANSMISSION) {
-            irradiance = mix(cdrf_around(harmonics_around(normals.sharp), vec3f(0.0f)), irradiance, surface.transmission);
+            irradiance = mix(
+                cdrf_around(harmonics_around(normals.sharp), vec3f(0.0f)), irradiance, surface.transmission
+            );
         }
         received += irradiance;
     }
@@ -527,7 +554,9 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
         let arrival = light_arrival(lights[index], position);
         var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.alpha);
         if (EFFECT_SECOND_LOBE) {
-            let second = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.second_alpha);
+            let second = reflection_highlight(
+                arrival, normals.sharp, toward_eye, material.index, material.second_alpha
+            );
             highlight = mix(highlight, second, material.second_weight);
         }
         if (EFFECT_SHADOW) {

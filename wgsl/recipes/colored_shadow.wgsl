@@ -1,4 +1,4 @@
-// colored_shadow: clear stones as one light sees them: how much light is lost on the way through them, per channel, and how far away they begin.
+// colored_shadow: clear stones as one light sees them: the light lost in them, per channel, and where they begin.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own. Everitt, "Order-Independent Transparency", 2001, names the trouble of order; sums of
 //   optical depths have none.

@@ -1,4 +1,4 @@
-// diffusion_cells: a body as cells for diffusion: filled volume, open faces, the surface's area and distance, from voxels of half the spacing and from the mesh.
+// diffusion_cells: a body as cells for diffusion: volume, faces, and the surface, from finer voxels and from the mesh.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; cut cells as in Johansen and Colella, "A Cartesian Grid Embedded Boundary Method for
 //   Poisson's Equation on Irregular Domains", J. Comput. Phys. 147 (1998), with two-point fluxes.
@@ -181,7 +181,9 @@ fn diffusion_from_triangle(point: vec3f, triangle: DiffusionTriangle) -> f32 {
         let height = dot(point - a, n);
         return height * height;
     }
-    return min(diffusion_from_edge(point, a, b), min(diffusion_from_edge(point, b, c), diffusion_from_edge(point, c, a)));
+    return min(
+        diffusion_from_edge(point, a, b), min(diffusion_from_edge(point, b, c), diffusion_from_edge(point, c, a))
+    );
 }
 
 // Irradiance from all around on a surface that nothing hides, of which `largest` counts as 1.
@@ -213,7 +215,8 @@ fn diffusion_add(triangle: DiffusionTriangle, first: u32, step: u32) {
         // Shares of the edges from a to b and from b to c, in pieces.
         let along = f32(row) + third;
         let across = f32(place / 2u) + select(2.0f, 1.0f, (place & 1u) == 0u) / 3.0f;
-        let position = triangle.a + (along * (triangle.b - triangle.a) + across * (triangle.c - triangle.b)) / f32(side);
+        let position = triangle.a
+            + (along * (triangle.b - triangle.a) + across * (triangle.c - triangle.b)) / f32(side);
         let voxel = vec3u(clamp(position, vec3f(0.0f), vec3f(f32(last))));
         var holder = voxel;
         if (filled[diffusion_index(holder)] == 0u) {

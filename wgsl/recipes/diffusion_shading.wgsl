@@ -1,8 +1,9 @@
-// diffusion_shading: translucent stone: the light that a body scatters towards the eye along its way inside, by the fluence of diffusion, in one draw call.
+// diffusion_shading: translucent stone: light scattered to the eye along its way inside, by diffusion, in one draw.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; Chandrasekhar, "Radiative Transfer", 1960, for what a cell cannot resolve.
 // requires: environment, cdrf, diffusion, fresnel, half_space, microfacet, reflective_shadow_map, voxelization
-// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection, diffusion_nodes, diffusion_packed
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
+// parts: diffusion_nodes, diffusion_packed
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
 // voxelize, diffusion_cells, draw_light_map, diffusion_source and diffusion_solve.
@@ -10,13 +11,14 @@
 // Light through the body. If off, only light that falls on the surface itself is sent back. Called for
 // by extras.lapidary.scattering and absorption.
 override EFFECT_DIFFUSION: bool = true;
-// Lamps stand inside the body, and their light is scattered on its way out. Called for by a lamp that the mesh encloses.
+// Lamps stand inside the body, and their light is scattered on its way out. Called for by a lamp that the mesh
+// encloses.
 override EFFECT_LAMP_INSIDE: bool = false;
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
-// The density varies so much that ways of eye and light are followed from voxel to voxel; else that about a point counts
-// for the way to the next. Needs EFFECT_EXTINCTION_PER_VOXEL.
+// The density varies so much that ways of eye and light are followed from voxel to voxel; else that about a
+// point counts for the way to the next. Needs EFFECT_EXTINCTION_PER_VOXEL.
 override DIFFUSION_VARIED: bool = false;
 // Diffuse light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
@@ -87,7 +89,11 @@ fn diffusion_vertex(@builtin(vertex_index) vertex: u32) -> DiffusionVertex {
 
 // Chandrasekhar's H function in each channel.
 fn diffusion_h(cosine: f32) -> vec3f {
-    return vec3f(half_space_h(cosine, body.gamma.x), half_space_h(cosine, body.gamma.y), half_space_h(cosine, body.gamma.z));
+    return vec3f(
+        half_space_h(cosine, body.gamma.x),
+        half_space_h(cosine, body.gamma.y),
+        half_space_h(cosine, body.gamma.z)
+    );
 }
 
 // What the nodes around a point hold.
@@ -151,7 +157,9 @@ fn diffusion_sample(place: vec3f) -> DiffusionSample {
 // The same nodes with weights that put their mean at a depth below the surface, as near as they can.
 fn diffusion_at_depth(around: DiffusionSample, depth: f32) -> DiffusionSample {
     var found = around;
-    let slope = diffusion_slope(depth - found.depth, found.variance, found.depth - found.shallowest, found.deepest - found.depth);
+    let slope = diffusion_slope(
+        depth - found.depth, found.variance, found.depth - found.shallowest, found.deepest - found.depth
+    );
     found.fluence = max(found.fluence + slope * found.covariance, vec3f(0.0f));
     found.depth += slope * found.variance;
     return found;
@@ -280,14 +288,16 @@ struct DiffusionEye {
 }
 
 //+extinction_per_voxel {
-// The density of the voxel about a place, given in voxel spacings from the grid's corner; `otherwise` where there is no matter.
+// The density of the voxel about a place, given in voxel spacings from the grid's corner; `otherwise` where
+// there is no matter.
 fn diffusion_density_about(place: vec3f, otherwise: f32) -> f32 {
     let voxel = vec3u(clamp(place, vec3f(0.0f), vec3f(f32(body.grid.cells - 1u))));
     let index = voxel.x + body.grid.cells * (voxel.y + body.grid.cells * voxel.z);
     return select(otherwise, max(density[index], DIFFUSION_THINNEST), diffusion_packed_volume(packed[index]) > 0.0f);
 }
 
-// Goes on from a place, about which the density is `dense`, until density times length is `wanted`, or beyond the matter.
+// Goes on from a place, about which the density is `dense`, until density times length is `wanted`, or beyond
+// the matter.
 // Returns: the length in voxel spacings, and the mean density.
 fn diffusion_march(place: vec3f, along: vec3f, wanted: f32, dense: f32) -> vec2f {
     var way = min(wanted / dense, DIFFUSION_NEAR);
@@ -323,7 +333,14 @@ fn diffusion_mean_density(place: vec3f, along: vec3f, way: f32, dense: f32) -> f
 //+extinction_per_voxel }
 
 // Adds a piece of the way, or begins it.
-fn diffusion_piece(eye: ptr<function, DiffusionEye>, sample: DiffusionSample, before: f32, depth: f32, around: DiffusionAround, begins: bool) {
+fn diffusion_piece(
+    eye: ptr<function, DiffusionEye>,
+    sample: DiffusionSample,
+    before: f32,
+    depth: f32,
+    around: DiffusionAround,
+    begins: bool
+) {
     var below = depth;
     var outside = around.near;
     if (!begins) {
@@ -353,7 +370,9 @@ fn diffusion_piece(eye: ptr<function, DiffusionEye>, sample: DiffusionSample, be
 }
 
 // The eye's way inside from a point of the surface; `toward_eye` and its cosine are those inside.
-fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles: vec3f, around: DiffusionAround) -> DiffusionWay {
+fn diffusion_inside(
+    position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles: vec3f, around: DiffusionAround
+) -> DiffusionWay {
     // The same places for all channels.
     let most = max(body.extinction.x, max(body.extinction.y, body.extinction.z));
     // A channel that scatters nothing has nothing to integrate.
@@ -440,7 +459,8 @@ fn diffusion_inside(position: vec3f, toward_eye: vec3f, cosine_eye: f32, angles:
     }
     inside.scattered = body.largest * eye.scattered * angles;
     inside.straight = vec3f(0.0f);
-    // The way is cut where it has passed all pieces, in the extinction that they count in; from there on there is all of one.
+    // The way is cut where it has passed all pieces, in the extinction that they count in; from there on there
+    // is all of one.
     let passed = extinction * (eye.gone.x / body.extinction.x) / dot(DIFFUSION_STEPS, vec4f(1.0f));
     inside.covered = 1.0f - exp(-eye.gone / max(1.0f - passed, 1e-3f));
     if (EFFECT_ENVIRONMENT) {
@@ -509,9 +529,11 @@ fn diffusion_end(inside: DiffusionWay, end: u32) -> DiffusionEnd {
     return DiffusionEnd(inside.ends[end - 1u], inside.densities[end - 1u], inside.means[end - 1u]);
 }
 
-// The density on the way of light to an end, of which `start` and `toward_eye` tell the place. Where the eye's way leaves the
-// body, light on its way to there goes through the matter before.
-fn diffusion_density_towards(single: DiffusionSingle, place: DiffusionEnd, start: vec3f, toward_eye: vec3f, toward_light: vec3f, way: f32) -> f32 {
+// The density on the way of light to an end, of which `start` and `toward_eye` tell the place. Where the eye's
+// way leaves the body, light on its way to there goes through the matter before.
+fn diffusion_density_towards(
+    single: DiffusionSingle, place: DiffusionEnd, start: vec3f, toward_eye: vec3f, toward_light: vec3f, way: f32
+) -> f32 {
     let dense = select(single.last, place.dense, place.dense > 0.0f);
     //+extinction_per_voxel {
     if (EFFECT_EXTINCTION_PER_VOXEL && DIFFUSION_VARIED) {
@@ -521,8 +543,11 @@ fn diffusion_density_towards(single: DiffusionSingle, place: DiffusionEnd, start
     return dense;
 }
 
-// Goes on to an end with this optical depth towards the light, or begins there; returns what the piece sends, for an irradiance of 1.
-fn diffusion_single_piece(single: ptr<function, DiffusionSingle>, place: DiffusionEnd, depth: vec3f, begins: bool) -> vec3f {
+// Goes on to an end with this optical depth towards the light, or begins there; returns what the piece sends,
+// for an irradiance of 1.
+fn diffusion_single_piece(
+    single: ptr<function, DiffusionSingle>, place: DiffusionEnd, depth: vec3f, begins: bool
+) -> vec3f {
     let far = min(depth, vec3f(30.0f));
     var sent = vec3f(0.0f);
     if (!begins) {
@@ -541,9 +566,17 @@ fn diffusion_single_piece(single: ptr<function, DiffusionSingle>, place: Diffusi
 }
 
 // Light that is scattered towards the eye for the first time, along the way inside from a point, away from
-// `toward_eye`: radiance for an irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light, `lit` is the share of the
-// light that meets the first point.
-fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light: vec3f, lit: f32, cosines: vec2f, inside: DiffusionWay) -> vec3f {
+// `toward_eye`: radiance for an irradiance of 1 and an albedo of 4 pi. `cosines` are those of eye and light,
+// `lit` is the share of the light that meets the first point.
+fn diffusion_single(
+    position: vec3f,
+    toward_eye: vec3f,
+    layer: u32,
+    toward_light: vec3f,
+    lit: f32,
+    cosines: vec2f,
+    inside: DiffusionWay
+) -> vec3f {
     let start = voxelization_local(body.grid, position);
     var sum = vec3f(0.0f);
     var single: DiffusionSingle;
@@ -564,15 +597,16 @@ fn diffusion_single(position: vec3f, toward_eye: vec3f, layer: u32, toward_light
             let found = diffusion_way(layer, position - place.reached * body.grid.spacing * toward_eye, toward_light);
             way = mix(found, flat, flatness);
         }
-        let depth = body.extinction * (diffusion_density_towards(single, place, start, toward_eye, toward_light, way) * way);
+        let depth = body.extinction
+            * (diffusion_density_towards(single, place, start, toward_eye, toward_light, way) * way);
         sum += diffusion_single_piece(&single, place, depth, end == 0u);
     }
     return sum;
 }
 
 //+lamp_inside {
-// Light of a lamp inside the body that is scattered towards the eye for the first time, along the way inside from a point: radiance
-// for an albedo of 4 pi.
+// Light of a lamp inside the body that is scattered towards the eye for the first time, along the way inside
+// from a point: radiance for an albedo of 4 pi.
 fn diffusion_single_of_lamp(light: Light, position: vec3f, toward_eye: vec3f, inside: DiffusionWay) -> vec3f {
     let spacing = body.grid.spacing;
     let start = voxelization_local(body.grid, position);
@@ -600,7 +634,9 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
     let toward_eye = normalize(view.eye - input.position);
     let squared = dot(input.normal, input.normal);
     let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
-    let cosine_outside = clamp(mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position)), 0.02f, 1.0f);
+    let cosine_outside = clamp(
+        mesh_cosine_to_eye(normal, toward_eye, dpdx(input.position), dpdy(input.position)), 0.02f, 1.0f
+    );
     let albedo = (1.0f - body.gamma) * (1.0f + body.gamma);
     // Inside of the surface.
     var cosine_eye = cosine_outside;
@@ -663,7 +699,9 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
             entered *= (1.0f - fresnel_dielectric(met, body.index)) * met / cosine_light;
         }
         if (EFFECT_DIFFUSION) {
-            sent += 0.07957747f * albedo * entered * diffusion_single(input.position, back, layer, arrival.direction, lit, vec2f(cosine_eye, cosine_light), inside);
+            sent += 0.07957747f * albedo * entered * diffusion_single(
+                input.position, back, layer, arrival.direction, lit, vec2f(cosine_eye, cosine_light), inside
+            );
         }
         if (lit > 0.0f) {
             let law = vec3f(
@@ -693,7 +731,9 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
         if (EFFECT_LAMP_INSIDE) {
             for (var light = 0u; light < arrayLength(&lights); light++) {
                 if (enclosed[light] != 0u) {
-                    sent += 0.07957747f * albedo * diffusion_single_of_lamp(lights[light], input.position, back, inside);
+                    sent += 0.07957747f * albedo * diffusion_single_of_lamp(
+                        lights[light], input.position, back, inside
+                    );
                 }
             }
         }

@@ -1,4 +1,4 @@
-// diffusion_solve: the fluence of light in a body's cells, by multigrid: sweeps over cells of two colours, corrections from grids half as fine.
+// diffusion_solve: the fluence in a body's cells, by multigrid: sweeps in two colours, corrections by coarser grids.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Trottenberg, Oosterlee and Schueller, "Multigrid", 2001, sections 2 and 5; Stam, "Multiple
 //   Scattering as a Diffusion Process", 1995, for light; Braess, "Towards Algebraic Multigrid for
@@ -20,10 +20,10 @@
 //    the finest level.
 // 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
 // 4. `diffusion_solve_pack`, with `packed` cleared before, for the recipe that shades.
-// With the flux limiter conductances of the finest level are limited by the fluence as it is: in `diffusion_solve_sweep`,
-// `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each cycle, the first one too,
-// `diffusion_solve_coarsen`, whose conductances are then made anew from level to level. They read `nodes` and
-// `level.extinction`.
+// With the flux limiter conductances of the finest level are limited by the fluence as it is: in
+// `diffusion_solve_sweep`, `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each
+// cycle, the first one too, `diffusion_solve_coarsen`, whose conductances are then made anew from level to
+// level. They read `nodes` and `level.extinction`.
 
 // The factor of a coarse face, of the sum of the faces that it joins: a correction that is constant
 // within each coarse cell has slopes twice as steep as one that is linear.

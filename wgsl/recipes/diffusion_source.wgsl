@@ -1,13 +1,13 @@
-// diffusion_source: where light is scattered for the first time: every texel of the lights' maps sends its light straight on into the body, and adds it to the nodes along the way.
+// diffusion_source: where light is first scattered: texels of the lights' maps send their light straight into the body.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; light that is not yet scattered as the source of diffusion as in Ishimaru, "Wave
 //   Propagation and Scattering in Random Media", 1978, chapter 9.
 // requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
 // parts: lights, light_views, diffusion_nodes, tiles
 //
-// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, for lamps inside
-// diffusion_source_lamp with 2 cells^2 invocations for each light, and diffusion_source_finish with a workgroup for each of
-// the `tiles`, as the recipe diffusion_cells lists them.
+// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, for lamps
+// inside diffusion_source_lamp with 2 cells^2 invocations for each light, and diffusion_source_finish with a
+// workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
@@ -33,8 +33,8 @@ struct DiffusionSource {
     milne: vec3f,
     // The root of 1 - albedo, in each channel.
     gamma: vec3f,
-    // The irradiance that counts as 1: at least the greatest that arrives at the body, and as much that the light of all lamps
-    // inside fills a voxel's face sixteen times.
+    // The irradiance that counts as 1: at least the greatest that arrives at the body, and as much that the
+    // light of all lamps inside fills a voxel's face sixteen times.
     largest: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
@@ -66,8 +66,8 @@ struct DiffusionAround {
     depth: f32,
 }
 
-// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface; a negative
-// depth says that the nodes know it best.
+// The nodes around a point, given in voxel spacings from the grid's corner, and by its depth below the surface;
+// a negative depth says that the nodes know it best.
 fn diffusion_around(place: vec3f, below: f32, cells: u32) -> DiffusionAround {
     let last = f32(cells - 1u);
     let low = floor(place - 0.5f);
@@ -158,9 +158,10 @@ fn diffusion_entering(texel: vec3u, position: vec3f, toward_light: vec3f) -> vec
     return normalize(toward_light / source.index + (inside - cosine / source.index) * normal);
 }
 
-// Sends light straight on into the body from a place on its surface, in voxel spacings from the grid's corner, or from one inside,
-// and adds what is scattered to the nodes along the way. `back` points against the way, `cosine` is its cosine with the
-// surface's normal, -1 from inside; `energy` is what all scattering makes of the light, in units of one that fills a voxel's face.
+// Sends light straight on into the body from a place on its surface, in voxel spacings from the grid's corner,
+// or from one inside, and adds what is scattered to the nodes along the way. `back` points against the way,
+// `cosine` is its cosine with the surface's normal, -1 from inside; `energy` is what all scattering makes of
+// the light, in units of one that fills a voxel's face.
 fn diffusion_march(entry: vec3f, back: vec3f, cosine: f32, energy: vec3f) {
     let cells = source.grid.cells;
     var gone = vec3f(0.0f);
@@ -264,7 +265,9 @@ fn diffusion_source_texel(@builtin(global_invocation_id) texel: vec3u) {
     } else {  //+dielectric
         for (var channel = 0u; channel < 3u; channel++) {
             let gamma = source.gamma[channel];
-            energy[channel] *= diffusion_angle(cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), gamma, DIFFUSION_MILNE);
+            energy[channel] *= diffusion_angle(
+                cosine, half_space_h(cosine, gamma), half_space_h(1.0f, gamma), gamma, DIFFUSION_MILNE
+            );
         }
     }  //+dielectric
     diffusion_march(entry, back, cosine, energy);

@@ -1,4 +1,4 @@
-// environment_harmonics: an environment map that changes, projected to the spherical harmonics that light matte surfaces.
+// environment_harmonics: a changing environment map, projected to the spherical harmonics that light matte surfaces.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps",
 //   2001; to degree 4.

@@ -1,7 +1,8 @@
 // gem: a transparent stone by proxy geometry, in one draw call and without any data but the soft-edged mesh.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
-// requires: absorption, bounds_trace, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
+// requires: absorption, bounds_trace, closest_point, dispersion, environment, fresnel
+// requires: proxy_geometry, refraction, screen_trace
 // parts: mesh, mesh_normals, surroundings, bodies, gem_shading, screen, gem_apart
 // compares: closest_point
 //
@@ -35,7 +36,9 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     let position_b = mesh_position(b);
     let position_c = mesh_position(c);
     if (CENTRE_PAPER) {
-        return closest_point_centre_paper(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
+        return closest_point_centre_paper(
+            position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c)
+        );
     }
     return closest_point_centre(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
 }
@@ -86,7 +89,11 @@ struct GemPlace {
 }
 
 fn gem_enter(input: GemVertex) -> GemPlace {
-    return GemPlace(ProxyGeometryPlane(input.plane_origin, input.edge_first, input.edge_second), input.centre, input.face_normal);
+    return GemPlace(
+        ProxyGeometryPlane(input.plane_origin, input.edge_first, input.edge_second),
+        input.centre,
+        input.face_normal
+    );
 }
 
 // The hit on a tile of the plane. A ray misses the next plane if a tile has turned it away from
@@ -99,7 +106,9 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     }
     let coordinates = proxy_geometry_coordinates(hit.point, plane.origin, plane.edge_first, plane.edge_second);
     let facet = proxy_geometry_facet(plane, proxy_geometry_cell(coordinates));
-    let normal = proxy_geometry_facet_normal((*place).centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, ray.direction);
+    let normal = proxy_geometry_facet_normal(
+        (*place).centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, ray.direction
+    );
     (*place).plane = proxy_geometry_next_plane((*place).centre, facet);
     return GemHit(hit.point, normal, hit.distance, true);
 }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the part trace_nearest; its loop over all triangles is the comparison of Imagire, "Proxy
 //   Geometry Gem Rendering", section 5.
-// requires: absorption, bounds_trace, bvh_trace, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
+// requires: absorption, bounds_trace, bvh_trace, dispersion, environment, fresnel, proxy_geometry
+// requires: refraction, screen_trace
 // parts: surroundings, bodies, trace_nearest, gem_shading, screen, gem_apart
 //
 // Draw 3 vertices per triangle, in the order of the leaves, without a vertex buffer. The nodes and

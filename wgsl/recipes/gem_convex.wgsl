@@ -1,7 +1,8 @@
 // gem_convex: a convex stone by its exact facets: each ray inside is tested against every facet plane.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
-// requires: absorption, bounds_trace, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction, screen_trace
+// requires: absorption, bounds_trace, convex_trace, dispersion, environment, fresnel
+// requires: proxy_geometry, refraction, screen_trace
 // parts: mesh, surroundings, bodies, gem_shading, screen, gem_apart
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes. Each draw takes one stone,
@@ -63,7 +64,12 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
     }
     (*place).face = nearest.face;
     let plane = planes[nearest.face];
-    return GemHit(convex_trace_point(ray.position, ray.direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
+    return GemHit(
+        convex_trace_point(ray.position, ray.direction, nearest.distance, plane),
+        -plane.xyz,
+        nearest.distance,
+        true
+    );
 }
 
 // Radiance that the stone sends to the eye, linear, with an alpha of 1.

@@ -1,7 +1,8 @@
-// gem_walk: a convex stone by its exact facets: each ray inside finds its next facet in a few steps over a map of the facets by direction.
+// gem_walk: a convex stone by its exact facets: each ray finds its next facet in a few steps over a map of them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the module convex_walk.
-// requires: absorption, bounds_trace, convex_trace, convex_walk, dispersion, environment, fresnel, proxy_geometry, ray_footprint, refraction, screen_trace
+// requires: absorption, bounds_trace, convex_trace, convex_walk, dispersion, environment, fresnel
+// requires: proxy_geometry, ray_footprint, refraction, screen_trace
 // parts: mesh, surroundings, bodies, gem_shading, screen
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes and their map, made once for
@@ -148,7 +149,9 @@ fn gem_footprint_hit(ray: GemRay, nearest: ConvexTraceHit) {
     let normal = planes[nearest.face].xyz;
     if (runner_up.face != CONVEX_TRACE_NONE) {
         let gap = runner_up.distance - nearest.distance;
-        let edge = ray_footprint_edge(ray.direction, gem_footprint.right, gem_footprint.down, normal, planes[runner_up.face].xyz, gap);
+        let edge = ray_footprint_edge(
+            ray.direction, gem_footprint.right, gem_footprint.down, normal, planes[runner_up.face].xyz, gap
+        );
         let growth = ray_footprint_growth(gem_footprint.distance, ray.travelled + nearest.distance, material.index);
         // What the pixel has gathered before the edge is its own: only the light still to come counts.
         let to_come = max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
@@ -219,7 +222,9 @@ fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
 // both come from one facet and meet one facet, that is all; otherwise the second ray walks on by
 // itself, from the nearest of them. A facet that is no candidate of the first ray may then be missed
 // while the rays are together: a sliver between two edges.
-fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
+fn gem_hit_both(
+    place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay
+) -> GemHits {
     let start = (*place).position;
     let left = (*place).face;
     let start_other = (*place_other).position;
@@ -242,8 +247,12 @@ fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<fu
             gem_footprint_test(nearest, start, ray.direction, second, left);
         }
         nearest = convex_trace_step(nearest, start, ray.direction, planes[second], second, left);
-        nearest_other = convex_trace_step(nearest_other, start_other, other.direction, planes[first], first, left_other);
-        nearest_other = convex_trace_step(nearest_other, start_other, other.direction, planes[second], second, left_other);
+        nearest_other = convex_trace_step(
+            nearest_other, start_other, other.direction, planes[first], first, left_other
+        );
+        nearest_other = convex_trace_step(
+            nearest_other, start_other, other.direction, planes[second], second, left_other
+        );
         if (more) {
             cell = rest;
         } else {

@@ -42,11 +42,19 @@ fn optical_path_sampled(position: vec3f) -> f32 {
     let weight = inside - vec3f(lower);
     let near = mix(
         mix(optical_path_texel(lower), optical_path_texel(vec3u(upper.x, lower.yz)), weight.x),
-        mix(optical_path_texel(vec3u(lower.x, upper.y, lower.z)), optical_path_texel(vec3u(upper.xy, lower.z)), weight.x),
+        mix(
+            optical_path_texel(vec3u(lower.x, upper.y, lower.z)),
+            optical_path_texel(vec3u(upper.xy, lower.z)),
+            weight.x
+        ),
         weight.y,
     );
     let far = mix(
-        mix(optical_path_texel(vec3u(lower.xy, upper.z)), optical_path_texel(vec3u(upper.x, lower.y, upper.z)), weight.x),
+        mix(
+            optical_path_texel(vec3u(lower.xy, upper.z)),
+            optical_path_texel(vec3u(upper.x, lower.y, upper.z)),
+            weight.x
+        ),
         mix(optical_path_texel(vec3u(lower.x, upper.yz)), optical_path_texel(upper), weight.x),
         weight.y,
     );

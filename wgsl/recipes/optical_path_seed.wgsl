@@ -1,4 +1,4 @@
-// optical_path_seed: where light enters a body: each lit texel of the lights' maps puts its cost into the voxel that it lies in and those about it.
+// optical_path_seed: where light enters a body: lit texels of the lights' maps put costs into the voxels about them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
 //   Programming", section 3.1.

@@ -1,4 +1,4 @@
-// optical_path_shading: translucent stone: the light that comes along the cheapest way through the body, in one draw call.
+// optical_path_shading: translucent stone: light that comes along the cheapest way through the body, in one draw call.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
 //   Programming", section 3.2.

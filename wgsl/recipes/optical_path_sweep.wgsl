@@ -70,7 +70,9 @@ fn optical_path_sweep_pull(@builtin(global_invocation_id) voxel: vec3u) {
                 // 1, 2 or 3 axes: the square of the edge's length in voxels.
                 let axes = u32(abs(x) + abs(y) + abs(z));
                 let place = vec3u(vec3i(voxel) + vec3i(x, y, z));
-                let in_stencil = axes == 1u || (axes == 2u && OPTICAL_PATH_STENCIL >= 18u) || (axes == 3u && OPTICAL_PATH_STENCIL == 26u);
+                let in_stencil = axes == 1u
+                    || (axes == 2u && OPTICAL_PATH_STENCIL >= 18u)
+                    || (axes == 3u && OPTICAL_PATH_STENCIL == 26u);
                 // Coordinates below 0 wrap round to large ones.
                 if in_stencil && all(place < vec3u(grid.cells)) {
                     let neighbour = optical_path_voxel(place);

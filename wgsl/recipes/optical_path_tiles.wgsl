@@ -1,4 +1,4 @@
-// optical_path_tiles: least optical depths, only where they still change: tiles of 4 x 4 x 4 voxels, a list of active ones.
+// optical_path_tiles: least optical depths, only where they still change: a list of tiles of 4 x 4 x 4 voxels.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J. Sci. Comput.
 //   30 (2008), the block-based variant.
@@ -242,8 +242,12 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
     //+extinction_per_voxel {
     } else if EFFECT_EXTINCTION_PER_VOXEL {
         let own = extinctions[4].inner;
-        cost = optical_path_offered(cost, own, optical_path_before(row), optical_path_before(extinctions[4]), grid.spacing);
-        cost = optical_path_offered(cost, own, optical_path_after(row), optical_path_after(extinctions[4]), grid.spacing);
+        cost = optical_path_offered(
+            cost, own, optical_path_before(row), optical_path_before(extinctions[4]), grid.spacing
+        );
+        cost = optical_path_offered(
+            cost, own, optical_path_after(row), optical_path_after(extinctions[4]), grid.spacing
+        );
         cost = optical_path_from_beside(cost, own, rows[3], extinctions[3]);
         cost = optical_path_from_beside(cost, own, rows[5], extinctions[5]);
         cost = optical_path_from_beside(cost, own, rows[1], extinctions[1]);
@@ -288,7 +292,15 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
 
 // Relaxes the four inner rows of a plane one after the other, each from the updated row before it;
 // `low`, `same` and `high` hold extinctions.
-fn optical_path_rising(below: OpticalPathPlane, own: OpticalPathPlane, above: OpticalPathPlane, low: OpticalPathPlane, same: OpticalPathPlane, high: OpticalPathPlane, bits: u32) -> OpticalPathPlane {
+fn optical_path_rising(
+    below: OpticalPathPlane,
+    own: OpticalPathPlane,
+    above: OpticalPathPlane,
+    low: OpticalPathPlane,
+    same: OpticalPathPlane,
+    high: OpticalPathPlane,
+    bits: u32
+) -> OpticalPathPlane {
     var plane = own;
     plane[1].inner = optical_path_relaxed(
         OpticalPathNine(below[0], below[1], below[2], plane[0], plane[1], plane[2], above[0], above[1], above[2]),
@@ -314,7 +326,15 @@ fn optical_path_rising(below: OpticalPathPlane, own: OpticalPathPlane, above: Op
 }
 
 // The same, from the last row to the first.
-fn optical_path_falling(below: OpticalPathPlane, own: OpticalPathPlane, above: OpticalPathPlane, low: OpticalPathPlane, same: OpticalPathPlane, high: OpticalPathPlane, bits: u32) -> OpticalPathPlane {
+fn optical_path_falling(
+    below: OpticalPathPlane,
+    own: OpticalPathPlane,
+    above: OpticalPathPlane,
+    low: OpticalPathPlane,
+    same: OpticalPathPlane,
+    high: OpticalPathPlane,
+    bits: u32
+) -> OpticalPathPlane {
     var plane = own;
     plane[4].inner = optical_path_relaxed(
         OpticalPathNine(below[3], below[4], below[5], plane[3], plane[4], plane[5], above[3], above[4], above[5]),
@@ -410,7 +430,8 @@ fn optical_path_affected(bits: vec2u) -> u32 {
         let first = select(select(0u, 0xffffffffu, z == 1u), 0x0000ffffu, z == 0u);
         let second = select(select(0xffff0000u, 0xffffffffu, z == 1u), 0u, z == 0u);
         let touching = ((bits.x & first) | (bits.y & second)) & column & row;
-        let in_stencil = axes == 1u || (!OPTICAL_PATH_GODUNOV && ((axes == 2u && OPTICAL_PATH_STENCIL >= 18u) || (axes == 3u && OPTICAL_PATH_STENCIL == 26u)));
+        let in_stencil = axes == 1u || (!OPTICAL_PATH_GODUNOV
+            && ((axes == 2u && OPTICAL_PATH_STENCIL >= 18u) || (axes == 3u && OPTICAL_PATH_STENCIL == 26u)));
         affected |= select(0u, 1u << place, touching != 0u && in_stencil);
     }
     return affected;

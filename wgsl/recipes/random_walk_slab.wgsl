@@ -1,4 +1,4 @@
-// random_walk_slab: whole walks of light through a slab of scattering stone, one an invocation: the reference in its smallest closed case.
+// random_walk_slab: a walk of light through a slab of stone per invocation: the reference in its smallest closed case.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Chandrasekhar, "Radiative Transfer", 1950: what a half space must give back; Woodcock et
 //   al., 1965: delta tracking.
@@ -96,7 +96,9 @@ fn random_walk_slab_walk(walk: u32) -> RandomWalkSlabExit {
         }
         if event == RANDOM_WALK_SCATTERED {
             scatterings++;
-            direction = random_walk_turn(direction, random_walk_deflection(u.z, slab.anisotropy), random_walk_azimuth(u.w));
+            direction = random_walk_turn(
+                direction, random_walk_deflection(u.z, slab.anisotropy), random_walk_azimuth(u.w)
+            );
         }
     }
     return RandomWalkSlabExit(RANDOM_WALK_SLAB_UNFINISHED, scatterings, 0.0f, position.x);

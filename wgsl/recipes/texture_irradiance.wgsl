@@ -1,4 +1,4 @@
-// texture_irradiance: what arrives at a surface, drawn into the surface's own texture, for the recipe blur_texture to blur.
+// texture_irradiance: what arrives at a surface, drawn into its own texture, for the recipe blur_texture to blur.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
 //   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",

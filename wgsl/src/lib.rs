@@ -27,8 +27,8 @@ pub struct Module {
     pub whole: &'static str,
 }
 
-/// A complete shader, written with the functions of the modules that its `// requires:` line names,
-/// after the parts that its `// parts:` line names.
+/// A complete shader, written with the functions of the modules that its `// requires:` lines
+/// name, after the parts that its `// parts:` lines name.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe {
     /// The recipe's name.
@@ -150,8 +150,8 @@ pub fn prefixes(module: &str) -> [String; 3] {
     [format!("{module}_"), camel, format!("{}_", module.to_uppercase())]
 }
 
-/// Returns the names on the line that starts with `tag`.
+/// Returns the names on the lines that start with `tag`.
 fn named(source: &'static str, tag: &str) -> Vec<&'static str> {
-    let line = source.lines().find_map(|line| line.strip_prefix(tag)).unwrap_or_default();
-    line.split(',').map(str::trim).filter(|name| !name.is_empty()).collect()
+    let lines = source.lines().filter_map(|line| line.strip_prefix(tag));
+    lines.flat_map(|line| line.split(',')).map(str::trim).filter(|name| !name.is_empty()).collect()
 }

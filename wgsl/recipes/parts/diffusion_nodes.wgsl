@@ -1,4 +1,5 @@
-// diffusion_nodes: what a voxel holds of a body: which of its eight parts are filled, where their centroid is, and how deep it lies.
+// diffusion_nodes: what a voxel holds of a body: which of its eight parts are filled, where their
+//   centroid is, and how deep it lies.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //
@@ -32,6 +33,10 @@ fn diffusion_open(lower: u32, upper: u32, axis: u32) -> f32 {
 // The centroid of the filled eighths from the voxel's centre, in voxel spacings.
 fn diffusion_centroid(word: u32) -> vec3f {
     let all = max(f32(countOneBits(word & 255u)), 1.0f);
-    let upper = vec3f(f32(countOneBits(word & 0xaau)), f32(countOneBits(word & 0xccu)), f32(countOneBits(word & 0xf0u)));
+    let upper = vec3f(
+        f32(countOneBits(word & 0xaau)),
+        f32(countOneBits(word & 0xccu)),
+        f32(countOneBits(word & 0xf0u))
+    );
     return 0.5f * upper / all - 0.25f;
 }

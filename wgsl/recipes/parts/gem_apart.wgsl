@@ -5,7 +5,9 @@
 // A recipe adds: the part gem_shading, and what that part asks for but gem_hit_both.
 
 // The next facets of two rays, each found by a search of its own.
-fn gem_hit_both(place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay) -> GemHits {
+fn gem_hit_both(
+    place: ptr<function, GemPlace>, ray: GemRay, place_other: ptr<function, GemPlace>, other: GemRay
+) -> GemHits {
     let first = gem_hit(place, ray);
     let second = gem_hit(place_other, other);
     return GemHits(first, second);

@@ -399,13 +399,21 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
         }
         let hit = gem_hit(&place, ray);
         if (gem_arrive(&ray, hit)) {
-            let red = gem_exit(dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r);
-            let green = gem_exit(dispersion_direction(ray.direction, gradient, offsets.g), hit.normal, material.channel_indices.g);
-            let blue = gem_exit(dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b);
+            let red = gem_exit(
+                dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r
+            );
+            let green = gem_exit(
+                dispersion_direction(ray.direction, gradient, offsets.g), hit.normal, material.channel_indices.g
+            );
+            let blue = gem_exit(
+                dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b
+            );
             let share = vec3f(red.share, green.share, blue.share);
             if (any(share > vec3f(0.0f))) {
                 let lead = gem_lead(red, green, blue);
-                let outside = gem_surroundings_channels(hit.point, lead, red.direction, green.direction, blue.direction);
+                let outside = gem_surroundings_channels(
+                    hit.point, lead, red.direction, green.direction, blue.direction
+                );
                 gem_leave(&ray, share, outside);
             }
             gem_reflect(&ray, hit);
@@ -457,7 +465,8 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
         if (gem_arrive(&blue, hits.second)) {
             let exit = gem_exit(blue.direction, hits.second.normal, channels.b);
             if (exit.share > 0.0f) {
-                gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share), gem_surroundings_blue(hits.second.point, exit.direction));
+                gem_leave(&blue, vec3f(0.0f, 0.0f, exit.share),
+                    gem_surroundings_blue(hits.second.point, exit.direction));
             }
             gem_reflect(&blue, hits.second);
         }
@@ -498,7 +507,9 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
         if (gem_arrive(&ray, hit)) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
-                let leaving = dispersion_paper_refract(ray.direction, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
+                let leaving = dispersion_paper_refract(
+                    ray.direction, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON
+                );
                 let outside = gem_surroundings_paper(hit.point, exit.direction, leaving, ray.travelled);
                 gem_leave(&ray, vec3f(exit.share), outside);
             }
@@ -554,7 +565,9 @@ fn gem_radiance(
             // Reflectance for white light.
             separate.reflectance += weights * vec3f(reflectance);
             if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
-                separate.inside += weights * ((1.0f - reflectance) * gem_trace(input, direction, index));  //+bvh_trace,convex_trace,proxy_geometry
+                separate.inside += weights  //+bvh_trace,convex_trace,proxy_geometry
+                    * ((1.0f - reflectance)  //+bvh_trace,convex_trace,proxy_geometry
+                    * gem_trace(input, direction, index));  //+bvh_trace,convex_trace,proxy_geometry
             }  //+bvh_trace,convex_trace,proxy_geometry
         }
         if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
@@ -610,5 +623,9 @@ fn gem_geometry_buffer(
 ) -> GemGeometryBuffer {
     let radiance = gem_radiance(input, transmits);  //+bvh_trace,convex_trace,proxy_geometry
     //-bvh_trace,convex_trace,proxy_geometry let radiance = gem_radiance(input);
-    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(gem_world_direction(input.face_normal), 0.0f), vec4f(radiance.reflectance, 1.0f));
+    return GemGeometryBuffer(
+        vec4f(radiance.inside, 1.0f),
+        vec4f(gem_world_direction(input.face_normal), 0.0f),
+        vec4f(radiance.reflectance, 1.0f)
+    );
 }

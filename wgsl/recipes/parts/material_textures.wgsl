@@ -1,11 +1,12 @@
-// material_textures: what the images of a material hold at a point: its colour, the slopes of its surface, how thick it is, and
-//   whether light enters.
+// material_textures: what the images of a material hold at a point: its colour, the slopes of its
+//   surface, how thick it is, and whether light enters.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
 //   2, 2011, for normals blurred per colour; Mikkelsen, "Surface Gradient-Based Bump Mapping Framework",
 //   JCGT 9 (2020), for tangents from derivatives.
 //
-// Call what samples an image outside all branches: the level of the image follows from the derivatives of its coordinates.
+// Call what samples an image outside all branches: the level of the image follows from the derivatives of its
+// coordinates.
 //
 // A recipe adds: nothing.
 
@@ -13,9 +14,11 @@
 override EFFECT_BASE_COLOR_TEXTURE: bool = false;
 // The surface has slopes too fine for the mesh. Called for by a material's normalTexture.
 override EFFECT_NORMAL_TEXTURE: bool = false;
-// How far light spreads inside varies over the surface. Called for by a material's thicknessTexture on a body that cdrf draws.
+// How far light spreads inside varies over the surface. Called for by a material's thicknessTexture on a body
+// that cdrf draws.
 override EFFECT_THICKNESS_TEXTURE: bool = false;
-// Where light enters varies over the surface. Called for by a material's diffuseTransmissionTexture on a body that cdrf draws.
+// Where light enters varies over the surface. Called for by a material's diffuseTransmissionTexture on a body
+// that cdrf draws.
 override EFFECT_TRANSMISSION_TEXTURE: bool = false;
 // The diffuse colour varies from vertex to vertex. Called for by a mesh's COLOR_0.
 override EFFECT_VERTEX_COLOR: bool = false;

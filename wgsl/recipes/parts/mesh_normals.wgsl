@@ -10,9 +10,9 @@ fn mesh_normal(index: u32) -> vec3f {
 }
 
 // The cosine of a unit normal to the unit direction of the eye, for laws that vanish at grazing angles. Between a
-// silhouette and the triangle's far edge interpolated normals face away from an eye that sees the triangle: there it
-// is half the triangle's own cosine, by the derivatives of the position along the picture's axes. On fine meshes the
-// normal's is the larger one.
+// silhouette and the triangle's far edge interpolated normals face away from an eye that sees the triangle. There
+// it is half the triangle's own cosine, by the derivatives of the position along the picture's axes. On fine meshes
+// the normal's is the larger one.
 fn mesh_cosine_to_eye(normal: vec3f, toward_eye: vec3f, position_x: vec3f, position_y: vec3f) -> f32 {
     let across = cross(position_x, position_y);
     let flat = abs(dot(across, toward_eye)) * inverseSqrt(max(dot(across, across), 1e-30f));

@@ -1,11 +1,12 @@
-// translucent_shadow: shadows on scattering matter: their edges, blurred for each colour, and how far light has come through
-// the body behind them, by the lights' maps.
+// translucent_shadow: shadows on scattering matter: their edges, blurred for each colour, and how far
+//   light has come through the body behind them, by the lights' maps.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Dachsbacher and Stamminger, "Translucent Shadow Maps", 2003, for the way through the body by the light's map and
-//   for a filter of the light that enters; own: both by one filter, of each colour's width.
+// Source: Dachsbacher and Stamminger, "Translucent Shadow Maps", 2003, for the way through the body by
+//   the light's map and for a filter of the light that enters; own: both by one filter, of each
+//   colour's width.
 //
-// A recipe adds: the module reflective_shadow_map and the parts light_views and shadow. The maps hold N.L of the bodies that light
-// enters.
+// A recipe adds: the module reflective_shadow_map and the parts light_views and shadow. The maps hold N.L of
+// the bodies that light enters.
 
 // Light that has spread inside softens the edges of shadows, and comes through thin parts. Called for by a shadow on a
 // body that scatters.
@@ -22,9 +23,10 @@ const TRANSLUCENT_SHADOW_WIDTH: f32 = 0.5f;
 const TRANSLUCENT_SHADOW_NARROWEST: f32 = 0.667f;
 // The largest width, of the map's. Matter without extinction would blur over all of it.
 const TRANSLUCENT_SHADOW_WIDEST: f32 = 0.03125f;
-// Distance of the filter's taps in largest widths. They lie on a lattice that is fixed to the map of a sun, so that weights
-// change from point to point and taps do not: taps about the point show as bands, and a lattice for each colour as fringes. At
-// 1.25 widths, ripples are below 1 % for the narrowest colour, and a tap comes in at three widths, with 1 % of the largest weight.
+// Distance of the filter's taps in largest widths. They lie on a lattice that is fixed to the map of a sun, so
+// that weights change from point to point and taps do not. Taps about the point show as bands, and a lattice
+// for each colour as fringes. At 1.25 widths, ripples are below 1 % for the narrowest colour, and a tap comes
+// in at three widths, with 1 % of the largest weight.
 const TRANSLUCENT_SHADOW_SPACING: f32 = 1.25f;
 // What is seen by this much of its distance across the light above the tangent plane is the same bent surface.
 const TRANSLUCENT_SHADOW_SLOPE: f32 = 0.7f;
@@ -33,7 +35,8 @@ const TRANSLUCENT_SHADOW_SLOPE: f32 = 0.7f;
 struct TranslucentShadow {
     // Share of the places around from which the light is seen.
     visible: vec3f,
-    // Share of the places around from which the light has not come farther than the reach; from one to two reaches it falls to 0.
+    // Share of the places around from which the light has not come farther than the reach; from one to two
+    // reaches it falls to 0.
     near: vec3f,
     // Way of the light from where it enters to the point, in units of length.
     way: vec3f,
@@ -42,12 +45,23 @@ struct TranslucentShadow {
 }
 
 // The same in one view, at a place of the map in texels of this size.
-fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: vec3f, normal: vec3f, toward_light: vec3f, free_path: vec3f, reach: vec3f) -> TranslucentShadow {
+fn translucent_shadow_in_view(
+    layer: u32,
+    place: vec2f,
+    texel: f32,
+    position: vec3f,
+    normal: vec3f,
+    toward_light: vec3f,
+    free_path: vec3f,
+    reach: vec3f
+) -> TranslucentShadow {
     let size = f32(textureDimensions(maps).x);
     let path = TRANSLUCENT_SHADOW_WIDTH * max(free_path.x, max(free_path.y, free_path.z));
     // Taps are more than a texel apart.
     let widest = clamp(path, texel, TRANSLUCENT_SHADOW_WIDEST * size * texel);
-    var widths = clamp(TRANSLUCENT_SHADOW_WIDTH * free_path, vec3f(TRANSLUCENT_SHADOW_NARROWEST * widest), vec3f(widest));
+    var widths = clamp(
+        TRANSLUCENT_SHADOW_WIDTH * free_path, vec3f(TRANSLUCENT_SHADOW_NARROWEST * widest), vec3f(widest)
+    );
     if (SHADOW_FORM == SHADOW_FORM_SOFT) {
         widths = vec3f((widths.x + widths.y + widths.z) / 3.0f);
     }
@@ -76,13 +90,25 @@ fn translucent_shadow_in_view(layer: u32, place: vec2f, texel: f32, position: ve
         }
     }
     if (min(weights.x, min(weights.y, weights.z)) < 1e-6f) {
-        return TranslucentShadow(vec3f(max(shadow_in_view(layer, position, normal), 0.0f)), vec3f(1.0f), vec3f(0.0f), vec3f(0.0f));
+        return TranslucentShadow(
+            vec3f(max(shadow_in_view(layer, position, normal), 0.0f)),
+            vec3f(1.0f),
+            vec3f(0.0f),
+            vec3f(0.0f)
+        );
     }
-    return TranslucentShadow(sum.visible / weights, sum.near / weights, sum.way / max(sum.cosine, vec3f(1e-6f)), sum.cosine / weights);
+    return TranslucentShadow(
+        sum.visible / weights,
+        sum.near / weights,
+        sum.way / max(sum.cosine, vec3f(1e-6f)),
+        sum.cosine / weights
+    );
 }
 
 // The same in the view of the light that contains the point; all is lit if none does.
-fn translucent_shadow_of_light(light: u32, position: vec3f, normal: vec3f, toward_light: vec3f, free_path: vec3f, reach: vec3f) -> TranslucentShadow {
+fn translucent_shadow_of_light(
+    light: u32, position: vec3f, normal: vec3f, toward_light: vec3f, free_path: vec3f, reach: vec3f
+) -> TranslucentShadow {
     let size = f32(textureDimensions(maps).x);
     for (var layer = 0u; layer < arrayLength(&views); layer++) {
         if (views[layer].light != light) {

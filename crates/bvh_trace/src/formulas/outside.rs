@@ -105,13 +105,10 @@ pub(super) fn promises() -> Vec<Promise> {
                 that(hit == before, || format!("{hit:?}"))
             },
         ),
-        nothing(
-            TRIANGLE,
-            "A triangle without area in the frame of the ray need not: its neighbours, of which it is an edge there, do",
-        ),
+        nothing(TRIANGLE, "A triangle without area in the ray's frame need not: its neighbours at that edge do"),
         holds(
             TRIANGLE,
-            "Of thin ones none is refused that the ray meets, but the point in it is less sure",
+            "Of thin ones none that the ray meets is refused, but its point is less sure",
             |draws| {
                 // A thin triangle, met in the middle by a ray from in front of it.
                 let (along, across) = (Vec3::X, draws.magnitude(-14, -5) * Vec3::Y);
