@@ -1,6 +1,6 @@
 // absorption: the share of light that a coloured medium lets through along a path inside, by Beer and Lambert's law.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 91fcb6730d8bd0b4
+// Version: 0.2.0
 // Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles
 //   of Optics", 7th ed., section 14.1. Abramowitz and Stegun, "Handbook of Mathematical Functions",
 //   4.1.27, for the logarithm.

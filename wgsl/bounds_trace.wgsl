@@ -1,6 +1,6 @@
 // bounds_trace: where a ray meets the bounds of another body, a box or an ellipsoid of any size, place and turn.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a3fe36c50d409ec0
+// Version: 0.2.0
 // Source: Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986 (slabs); Haines, Günther and
 //   Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019,
 //   chapter 7.

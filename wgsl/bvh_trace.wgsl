@@ -1,6 +1,6 @@
 // bvh_trace: rays inside a closed mesh of any shape, through a bounding volume hierarchy to triangles, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 00050e3d22e34717
+// Version: 0.2.0
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
 //   permutation, shear, edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013
 //   (conservative boxes). The naive triangle: Möller and Trumbore, "Fast, Minimum Storage

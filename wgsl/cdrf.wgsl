@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: diffuse light's clamped cosine, blurred as a curved, translucent surface does.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 61587a1906ed571b
+// Version: 0.2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function": max(cos t, 0) convolved with a Gaussian of sigma =
 //   sigma0 curvature. The closed forms are derived in docs/cdrf.md. Abramowitz and Stegun,

@@ -1,6 +1,6 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash b9f256d751527243
+// Version: 0.2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected
 //   after (A.6). The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the
 //   Regularization Method", 1963.

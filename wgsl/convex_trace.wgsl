@@ -1,6 +1,6 @@
 // convex_trace: where a ray in a convex stone meets its surface, from facet planes. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 3ef8a9d15ff63494
+// Version: 0.2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon;
 //   Cyrus and Beck, "Generalized two- and three-dimensional clipping", 1978, for planes in place of
 //   polygons.

@@ -1,6 +1,6 @@
 // convex_walk: the facet through which a ray leaves a convex stone, in a few steps over a map of the facets. Exact.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 45ed79d5a517787a
+// Version: 0.2.0
 // Source: own. The square: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal
 //   Vectors", 2010 (octahedral coordinates). For the planes: the module convex_trace.
 //

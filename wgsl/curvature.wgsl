@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d9df415c7e0df843
+// Version: 0.2.0
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and
 //   second fundamental form, Euler's formula; section 3-5, exercise 11: the area of a parallel
 //   surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.

@@ -1,6 +1,6 @@
 // diffusion: light that diffuses in matter on a grid: equation, source, what the eye sees, what surface cells miss.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 21e62c931c059c92
+// Version: 0.2.0
 // Source: Stam, "Multiple Scattering as a Diffusion Process", 1995, for diffusion in graphics; Wang, Zhao,
 //   Tong, Lin, Guo, Shum, "Modeling and Rendering of Heterogeneous Translucent Materials Using the
 //   Diffusion Equation", ACM Trans. Graph. 27, 2008, for a grid; Davison, "Neutron Transport Theory", 1957,

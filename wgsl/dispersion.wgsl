@@ -1,6 +1,6 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash b6a2e5a4884e2075
+// Version: 0.2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates
 //   Snell's law, eq. (6). Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's
 //   and Cauchy's formulas. Coefficients: Peter 1923 (diamond), Malitson 1962 (corundum), Ghosh 1999

@@ -1,6 +1,6 @@
 // environment: coordinates and texels of a latitude-longitude radiance map, and a studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash be4a580c652f3a11
+// Version: 0.2.0
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the
 //   map; the convention is that of Khronos's glTF Sample Renderer and three.js: +Y up,
 //   u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.

@@ -1,6 +1,6 @@
 // fresnel: the share of unpolarised light that an interface between two dielectrics reflects.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 138ac1df86b0f325
+// Version: 0.2.0
 // Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as
 //   docs/fresnel.md shows. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering",
 //   1994, eq. (15).

@@ -1,6 +1,6 @@
 // half_space: the law by which light enters and leaves a half space of scattering matter, with or without a boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d7ac78b53da301dc
+// Version: 0.2.0
 // Source: Chandrasekhar, "Radiative Transfer", 1960, sections 33 to 36, for the law and the
 //   H function; Hapke, "Theory of Reflectance and Emittance Spectroscopy", 2nd ed., 2012, section
 //   8.5, for its approximation by a polynomial under the integral; van de Hulst, "Multiple Light

@@ -1,6 +1,6 @@
 // optical_path: paths of least optical depth from the light to every voxel of a body, and the light along them.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 0339667324ad2b29
+// Version: 0.2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
 //   Programming", sections 2 and 3; Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29
 //   (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J.

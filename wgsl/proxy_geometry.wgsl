@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 99e9ef60d6512009
+// Version: 0.2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher
 //   orders.
 //

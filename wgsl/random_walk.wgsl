@@ -1,6 +1,6 @@
 // random_walk: walks of light in a scattering medium: random numbers, free paths, tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash b541375428cc2ca8
+// Version: 0.2.0
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta
 //   tracking); Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in

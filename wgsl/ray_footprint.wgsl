@@ -1,6 +1,6 @@
 // ray_footprint: the part of a pixel that shows what lies beyond a facet's edge, and the neighbours that show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e2be3dedb638e648
+// Version: 0.2.0
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
 //   mixing of neighbours: Persson, "Geometry Buffer Anti-Aliasing", in GPU Pro 3, 2012, for edges of
 //   the drawn mesh. The edges seen through facets, their shares, and the growth: own.

@@ -1,6 +1,6 @@
 // reflective_shadow_map: a point in a light's view: its place, the light it takes, and whether something hides it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 33dd68192bad503a
+// Version: 0.2.0
 // Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and
 //   Morishima, "Real-time Rendering of Translucent Material using Dynamic Programming", section
 //   3.1, for the four channels: world position and N.L; Duff et al., "Building an Orthonormal

@@ -1,6 +1,6 @@
 // refraction: a ray refracted at a plane interface, with total internal reflection as an explicit result.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 977e465d7366d7ff
+// Version: 0.2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of
 //   Optics, 7th ed., section 1.5.
 //

@@ -1,6 +1,6 @@
 // screen_trace: where a ray meets what a depth buffer shows, by steps on the screen that are all equally long.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash da79e98f4736b070
+// Version: 0.2.0
 // Source: McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing", JCGT 3(4), 2014. The end in view:
 //   Blinn and Newell, "Clipping Using Homogeneous Coordinates", SIGGRAPH 1978. The crossing: own.
 //

@@ -1,6 +1,6 @@
 // srgb: from scene radiance to display code values: tone curve, luminance, sRGB transfer function and its inverse.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 26a9420511b4ba09
+// Version: 0.2.0
 // Source: IEC 61966-2-1:1999 (transfer function); ITU-R BT.709-6, 3.3 (luminance weights); Khronos
 //   PBR Neutral Tone Mapper (tone curve).
 

@@ -1,6 +1,6 @@
 // texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance in its own texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 990283e867d9d522
+// Version: 0.2.0
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
 //   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
 //   GPU Gems 3, 2007, chapter 14: stretch, separable blur. The placement of the taps is derived in

@@ -1,6 +1,6 @@
 // veins: density of veined stone at a point of space: the surfaces on which gradient noise is 0, blurred.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 481407a4dd318c05
+// Version: 0.2.0
 // Source: Perlin, "Improving Noise", SIGGRAPH 2002 (fade and gradients); Jarzynski and Olano, "Hash
 //   Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d); Ebert et al., "Texturing and Modeling",
 //   3rd ed., 2003, ch. 2 (octaves, marble).

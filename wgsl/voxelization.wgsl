@@ -1,6 +1,6 @@
 // voxelization: a closed mesh as voxels: where a triangle crosses a column, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 56a697ee610a16de
+// Version: 0.2.0
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia
 //   2010 (parity along columns, conservative overlap); Akenine-Möller, "Fast 3D Triangle-Box
 //   Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).

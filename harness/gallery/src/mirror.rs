@@ -1,7 +1,6 @@
 //! A module's functions in WGSL beside their mirrors in Rust, line by line.
 
 use super::highlight::{self, Language, Piece};
-use lapidary_cookbook as cookbook;
 use lapidary_cookbook::Module;
 use serde::Serialize;
 use std::fs;

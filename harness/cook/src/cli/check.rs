@@ -12,9 +12,9 @@ use lapidary_cook::check::guard::{self, Stage};
 use lapidary_cook::check::seeds;
 use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
-use lapidary_render::file;
+
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Property tests of formulas: compares shader, mirror and oracle on random inputs, and shrinks the
 /// worst failure.

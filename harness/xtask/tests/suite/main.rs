@@ -4,5 +4,6 @@ mod contract;
 mod engines;
 mod host;
 mod structure;
+mod structure_files;
 mod technique;
 mod text;
