@@ -6,5 +6,5 @@ const MODULE: &str = include_str!("../../../wgsl/convex_walk.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/convex_walk.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

@@ -7,5 +7,5 @@ const MODULE: &str = include_str!("../../../wgsl/dispersion.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/dispersion.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

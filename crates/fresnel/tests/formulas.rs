@@ -7,5 +7,5 @@ const MODULE: &str = include_str!("../../../wgsl/fresnel.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/fresnel.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

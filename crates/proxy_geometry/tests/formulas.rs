@@ -7,5 +7,5 @@ const MODULE: &str = include_str!("../../../wgsl/proxy_geometry.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/proxy_geometry.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

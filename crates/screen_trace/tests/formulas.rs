@@ -6,5 +6,5 @@ const MODULE: &str = include_str!("../../../wgsl/screen_trace.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/screen_trace.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

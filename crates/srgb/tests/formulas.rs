@@ -7,5 +7,5 @@ const MODULE: &str = include_str!("../../../wgsl/srgb.wgsl");
 const NAIVE: &str = include_str!("../../../wgsl/naive/srgb.wgsl");
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+    lapidary_trials::test(&[MODULE, NAIVE], formulas())
 }

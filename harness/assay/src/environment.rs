@@ -10,7 +10,10 @@ pub const SEED_VARIABLE: &str = "ASSAY_SEED";
 pub const WITHOUT_ADAPTER_VARIABLE: &str = "ASSAY_WITHOUT_ADAPTER";
 
 /// Returns the seed that the environment names.
-pub(crate) fn seed() -> Result<Option<u64>, String> {
+///
+/// # Errors
+/// Returns an error if its value is no whole number.
+pub fn seed() -> Result<Option<u64>, String> {
     let Some(seed) = std::env::var_os(SEED_VARIABLE) else { return Ok(None) };
     let seed = seed.to_str().and_then(|seed| seed.parse().ok());
     seed.map(Some).ok_or_else(|| format!("{SEED_VARIABLE} is no whole number"))
@@ -18,7 +21,10 @@ pub(crate) fn seed() -> Result<Option<u64>, String> {
 
 /// Returns the device that the environment names. Without an adapter, if tests may be skipped,
 /// returns `None` and counts the skipped test on standard error.
-pub(crate) fn gpu(function: &str) -> Result<Option<&'static Gpu>, GpuError> {
+///
+/// # Errors
+/// Returns an error if there is no such device.
+pub fn gpu(function: &str) -> Result<Option<&'static Gpu>, GpuError> {
     static SKIPPED: AtomicUsize = AtomicUsize::new(0);
     match Gpu::shared(&AdapterChoice::from_environment()) {
         Ok(gpu) => Ok(Some(gpu)),

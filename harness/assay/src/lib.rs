@@ -52,7 +52,7 @@ pub mod accuracy_line;
 pub mod dispatch;
 pub mod draws;
 #[cfg(feature = "gpu")]
-mod environment;
+pub mod environment;
 #[cfg(feature = "gpu")]
 pub mod examination;
 pub mod extremum;
@@ -65,8 +65,6 @@ pub mod interpreter;
 #[cfg(feature = "gpu")]
 mod kernel;
 pub mod literal;
-#[cfg(feature = "trials")]
-pub mod module;
 #[cfg(feature = "gpu")]
 pub mod mutate;
 mod near;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Other crates that each crate of the harness may need; see docs/ARCHITECTURE.md.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     ("gpu", &[]),
     ("browser", &[]),
     ("specialise", &[]),
@@ -16,8 +16,70 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("reference", &["scene"]),
     ("plan", &["scene"]),
     ("render", &["gpu", "plan", "reference", "scene", "specialise", "wgsl"]),
-    ("cook", &["assay", "browser", "gpu", "plan", "reference", "render", "scene", "specialise", "translate", "wgsl"]),
+    ("flip", &[]),
+    ("trials", &["assay", "gpu"]),
+    ("cookbook", &["assay", "scene", "translate", "wgsl"]),
+    ("testing", &["assay", "cookbook", "gpu", "render", "scene"]),
+    (
+        "cook",
+        &["assay", "browser", "cookbook", "flip", "gpu", "plan", "reference", "render", "scene", "translate", "wgsl"],
+    ),
+    ("snapshots", &["cookbook", "flip", "gpu", "plan", "reference", "render", "scene", "wgsl"]),
+    (
+        "ladders",
+        &[
+            "assay",
+            "browser",
+            "cook",
+            "cookbook",
+            "gpu",
+            "plan",
+            "reference",
+            "render",
+            "scene",
+            "snapshots",
+            "specialise",
+            "wgsl",
+        ],
+    ),
+    (
+        "gallery",
+        &[
+            "assay",
+            "cook",
+            "cookbook",
+            "gpu",
+            "ladders",
+            "plan",
+            "render",
+            "scene",
+            "snapshots",
+            "specialise",
+            "translate",
+            "wgsl",
+        ],
+    ),
+    (
+        "xtask",
+        &[
+            "assay",
+            "cook",
+            "cookbook",
+            "gpu",
+            "plan",
+            "render",
+            "scene",
+            "snapshots",
+            "specialise",
+            "testing",
+            "translate",
+            "wgsl",
+        ],
+    ),
 ];
+
+/// Packages that build C or C++.
+const COMPILERS: [&str; 3] = ["cc v", "cmake v", "bindgen v"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -160,9 +222,17 @@ fn the_libraries_stay_small() {
         let needed = packages(package, features, "normal");
         assert!(needed.len() <= most, "{package} {features:?}: {} packages: {needed:?}", needed.len());
         let built = packages(package, features, "normal,build");
-        let compilers = ["cc v", "cmake v", "bindgen v", "nv-flip"];
-        assert!(!built.iter().any(|name| compilers.iter().any(|one| name.starts_with(one))), "{built:?}");
+        assert!(!built.iter().any(|name| COMPILERS.iter().any(|one| name.starts_with(one))), "{built:?}");
     }
+}
+
+/// A user of the cookbook builds few packages besides its own, and none that a C or C++ compiler builds.
+#[test]
+fn the_tool_stays_small() {
+    let mut needed = packages("lapidary-cook", &[], "normal,build");
+    needed.retain(|name| !name.starts_with("lapidary-"));
+    assert!(needed.len() <= 135, "{} packages: {needed:?}", needed.len());
+    assert!(!needed.iter().any(|name| COMPILERS.iter().any(|one| name.starts_with(one))), "{needed:?}");
 }
 
 /// Returns the texts of a folder's Rust sources, without test files.

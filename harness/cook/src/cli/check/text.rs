@@ -1,7 +1,7 @@
 //! Output of `cook check` for people.
 
 use super::Checked;
-use anstyle::AnsiColor;
+use console::Color;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::slack::Reassociation;
 use lapidary_cook::check::{On, Row, difference};
@@ -18,24 +18,18 @@ pub(super) enum Style {
 impl Style {
     /// Coloured on a terminal that supports it, unless `NO_COLOR` or a similar variable forbids it.
     pub(super) fn of_stdout() -> Style {
-        match anstream::AutoStream::choice(&std::io::stdout()) {
-            anstream::ColorChoice::Never => Style::Plain,
-            _ => Style::Coloured,
-        }
+        if console::colors_enabled() { Style::Coloured } else { Style::Plain }
     }
 
-    fn paint(self, colour: AnsiColor, text: &str) -> String {
+    fn paint(self, colour: Color, text: &str) -> String {
         match self {
             Style::Plain => text.to_owned(),
-            Style::Coloured => {
-                let style = anstyle::Style::new().bold().fg_color(Some(colour.into()));
-                format!("{style}{text}{style:#}")
-            }
+            Style::Coloured => console::Style::new().bold().fg(colour).force_styling(true).apply_to(text).to_string(),
         }
     }
 
     fn verdict(self, row: &Row) -> String {
-        if row.passed() { self.paint(AnsiColor::Green, "PASS") } else { self.paint(AnsiColor::Red, "FAIL") }
+        if row.passed() { self.paint(Color::Green, "PASS") } else { self.paint(Color::Red, "FAIL") }
     }
 }
 
@@ -123,7 +117,7 @@ pub(super) fn report(checked: &Checked, style: Style) -> String {
         "\n{held} of {} functions hold{}. `backward` in an Accuracy line allows more ulp where the input's own last place makes\n\
          them. Naive forms are left out unless named; they are tested where they do well.",
         checked.rows.len(),
-        if failed == 0 { String::new() } else { style.paint(AnsiColor::Red, &format!(", {failed} fail")) }
+        if failed == 0 { String::new() } else { style.paint(Color::Red, &format!(", {failed} fail")) }
     );
     text
 }

@@ -5,16 +5,16 @@
 //!
 //! ```ignore
 //! fn main() -> std::process::ExitCode {
-//!     lapidary_assay::module::test(&[include_str!("../refraction.wgsl")], formulas())
+//!     lapidary_trials::test(&[include_str!("../refraction.wgsl")], formulas())
 //! }
 //! ```
 
-use crate::accuracy_line::Accuracy;
-use crate::dispatch::{DispatchError, Kernel};
-use crate::environment;
-use crate::examination::{Examination, examine, tolerance};
-use crate::formula::Formula;
-use crate::property::{DEFAULT_CASES, Settings};
+use lapidary_assay::accuracy_line::Accuracy;
+use lapidary_assay::dispatch::{DispatchError, Kernel};
+use lapidary_assay::environment;
+use lapidary_assay::examination::{Examination, examine, tolerance};
+use lapidary_assay::formula::Formula;
+use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_gpu::Gpu;
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use std::process::ExitCode;
