@@ -35,18 +35,16 @@ fn signatures_and_accuracies_are_as_they_were() {
 /// The page of drivers shows the values of the records.
 #[test]
 fn the_drivers_are_as_recorded() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    let read = |name: &str| std::fs::read_to_string(docs.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let of = |folder: &str| -> builtins::Report {
-        serde_json::from_str(&read(&format!("measurements/{folder}/builtins.json"))).expect(folder)
+        serde_json::from_str(&read(&format!("docs/measurements/{folder}/builtins.json"))).expect(folder)
     };
     let builtins = builtins::side_by_side(&[
         ("lavapipe", of("lavapipe")),
         ("SwiftShader", of("swiftshader")),
         ("NVIDIA H200", of("nvidia_h200")),
     ]);
-    let rows: Vec<Row> = serde_json::from_str(&read("measurements/swiftshader/check.json")).expect("rows");
-    let page = read("drivers.md");
+    let rows: Vec<Row> = serde_json::from_str(&read("docs/measurements/swiftshader/check.json")).expect("rows");
+    let page = read("docs/drivers.md");
     let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");
     let filled = page::with_table(&filled, page::DIFFERENCES, &difference::table(&rows)).expect("sound marks");
     assert!(filled.contains(&builtins), "drivers.md has no place for the table `{}`", page::BUILTINS);
@@ -62,22 +60,42 @@ fn the_pictures_are_listed_with_their_captions() {
 /// The guide to choosing shows the planner's rungs, with the figures of the committed reports.
 #[test]
 fn the_guide_to_choosing_has_the_planners_rungs() {
-    let path = lapidary_cookbook::repository::place().join("docs/choosing.md");
-    let page = std::fs::read_to_string(path).expect("the page");
+    let page = read("docs/choosing.md");
     let part = lapidary_gallery::choices::page();
     let filled = page::with_table(&page, page::CHOICES, &part).expect("sound marks");
     assert!(filled.contains(&part), "choosing.md has no place for the tables `{}`", page::CHOICES);
     generated::keep("docs/choosing.md", &filled);
 }
 
-/// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
+/// The table of modules is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
 /// it.
 #[test]
-fn the_readme_lists_the_modules() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
-    let page = std::fs::read_to_string(&path).expect("the page");
-    let table = succeeds(std::path::Path::new("."), &["list", "--markdown"]).stdout;
+fn the_page_of_modules_lists_them() {
+    let page = read("docs/modules.md");
+    let table = succeeds(Path::new("."), &["list", "--markdown"]).stdout;
     let filled = page::with_table(&page, page::MODULES, &table).expect("sound marks");
-    assert!(filled.contains(&table), "README.md has no place for the table `{}`", page::MODULES);
-    generated::keep("README.md", &filled);
+    assert!(filled.contains(&table), "modules.md has no place for the table `{}`", page::MODULES);
+    generated::keep("docs/modules.md", &filled);
+}
+
+/// Reads a file by its path from the repository's folder.
+fn read(file: &str) -> String {
+    let path = cookbook::repository::place().join(file);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+/// Words of a Markdown text, code among them, without the targets of its links.
+fn words(text: &str) -> usize {
+    let mut parts = text.split("](");
+    let first = parts.next().unwrap_or_default();
+    let rest = parts.map(|part| part.split_once(')').map_or("", |(_, after)| after));
+    std::iter::once(first).chain(rest).collect::<String>().split_whitespace().count()
+}
+
+/// Who opens the repository reads what this is and what to type; the rest stands in `docs/`.
+#[test]
+fn the_readme_is_short() {
+    assert_eq!(words("a [link to](docs/a page.md) and `./cook list`"), 6);
+    let words = words(&read("README.md"));
+    assert!(words <= 600, "README.md has {words} words; docs/using.md has room");
 }
