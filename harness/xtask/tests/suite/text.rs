@@ -32,6 +32,14 @@ fn signatures_and_accuracies_are_as_they_were() {
     });
 }
 
+/// A pasted copy says from which release it is.
+#[test]
+fn every_module_states_the_release() {
+    for module in cookbook::modules() {
+        assert_eq!(module.header.version.as_deref(), Some(env!("CARGO_PKG_VERSION")), "{}", module.name);
+    }
+}
+
 /// The page of drivers shows the values of the records.
 #[test]
 fn the_drivers_are_as_recorded() {
