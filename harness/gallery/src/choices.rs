@@ -45,8 +45,8 @@ pub struct Choice {
     pub gpu: Option<String>,
     /// What was measured there instead: rungs of the same search with as many hits, or with the same colours.
     pub relatives: Vec<Timed>,
-    /// Times the time of `fast`.
-    pub times: String,
+    /// Whether it holds 60 frames a second there, in a word or two; `None` if no such frame was measured.
+    pub sixty: Option<String>,
 }
 
 impl Choice {
@@ -94,6 +94,8 @@ pub struct Heading {
     pub cpu: &'static str,
     /// The size of its pictures.
     pub cpu_size: String,
+    /// The size of the frames that a stone fills; `None` if the ladder's bodies are no stones.
+    pub filled_size: Option<String>,
 }
 
 /// A ladder's choices, for the page.
@@ -122,6 +124,7 @@ pub fn heading(kind: &Kind) -> Heading {
         gpu_size: on_gpu.size(kind),
         cpu: CPU,
         cpu_size: kind.size(&on_gpu.report),
+        filled_size: sixty::is_of_stones(kind).then(|| on_gpu.report.size()),
     }
 }
 
@@ -138,7 +141,6 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
             None => chosen.push((rung, vec![quality])),
         }
     }
-    let fast = kind.technique.rung(Quality::Fast);
     let choice = |rung: Rung, qualities: Vec<For>| {
         let name = rung.to_string();
         let step = ladder.step(&name)?;
@@ -151,13 +153,14 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
             ms: shown(step.ms),
             relatives: if gpu.is_none() { on_gpu.relatives(rung).map(timed).collect() } else { Vec::new() },
             gpu,
-            times: format!("{:.1}", step.ms / ladder.step(&fast.to_string())?.ms),
+            sixty: sixty::holds(kind, &name),
             rung: name,
         })
     };
     let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
     let mut choices: Vec<Choice> =
         chosen.iter().filter_map(|(rung, qualities)| choice(*rung, qualities.iter().map(of).collect())).collect();
+    let fast = kind.technique.rung(Quality::Fast);
     for (name, rung) in [(ON_A_GPU, better_on_gpu(kind, on_gpu, fast)), (IN_A_SIXTIETH, sixty::nearest(kind))] {
         let Some(rung) = rung.filter(|rung| chosen.iter().all(|(of, _)| of != rung)) else { continue };
         let label = For { name, is_default: false };

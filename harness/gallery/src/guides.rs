@@ -18,8 +18,10 @@ const fn guide(name: &'static str, file: &'static str, title: &'static str) -> G
 }
 
 /// What to read to take and to choose.
-pub const GUIDES: [Guide; 20] = [
+pub const GUIDES: [Guide; 22] = [
     guide("choosing", "docs/choosing.md", "Which rung to choose"),
+    guide("using", "docs/using.md", "Using the cookbook"),
+    guide("modules", "docs/modules.md", "All modules"),
     guide("gem", "docs/gem.md", "Clear stones in full"),
     guide("cdrf_shading", "docs/cdrf_shading.md", "Skin, wax and jade in full"),
     guide("optical_path_shading", "docs/optical_path_shading.md", "Optical paths in full"),

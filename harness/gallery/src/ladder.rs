@@ -157,7 +157,7 @@ impl<'a> Shown<'a> {
             Some(format!("{root}{}", picture.file))
         };
         let on_gpu = OnGpu::of(kind);
-        let hull = kind.ladder().map(Ladder::hull).unwrap_or_default();
+        let front = kind.ladder().map(Ladder::front).unwrap_or_default();
         let filled = |rung: &str| report.ms(rung, "filled", "time").filter(|_| kind.name == "convex");
         Self {
             name: kind.name,
@@ -177,7 +177,7 @@ impl<'a> Shown<'a> {
                     filled: filled(&step.rung).map_or_else(String::new, |ms| format!("{ms:.0}")),
                     gpu: on_gpu.ms(&step.rung).map_or_else(String::new, |ms| format!("{ms:.1}")),
                     qualities: qualities(kind, &step.rung).join(", "),
-                    front: is_front(&hull, step),
+                    front: is_front(&front, step),
                     paper: kind.paper.contains(&step.rung.as_str()),
                     href: href(&step.rung),
                 })
@@ -237,8 +237,8 @@ fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
 /// Returns the plots of a ladder: by the committed times, and by those of the GPU.
 fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<String>) -> Vec<Plot<'a>> {
     let drawings = |ladder: &Ladder, steps: &[&Step], limit: Option<f64>| {
-        let hull = ladder.hull();
-        let points: Vec<Point> = steps.iter().map(|step| point(kind, &hull, step, href(&step.rung))).collect();
+        let front = ladder.front();
+        let points: Vec<Point> = steps.iter().map(|step| point(kind, &front, step, href(&step.rung))).collect();
         plot::drawings(&points, limit)
     };
     let series = |steps: &[&Step]| {
@@ -302,11 +302,11 @@ fn measured(kind: &Kind, report: &Report) -> String {
     )
 }
 
-fn is_front(hull: &[&Step], step: &Step) -> bool {
-    hull.iter().any(|other| other.rung == step.rung)
+fn is_front(front: &[&Step], step: &Step) -> bool {
+    front.iter().any(|other| other.rung == step.rung)
 }
 
-fn point(kind: &Kind, hull: &[&Step], step: &Step, href: Option<String>) -> Point {
+fn point(kind: &Kind, front: &[&Step], step: &Step, href: Option<String>) -> Point {
     let qualities = qualities(kind, &step.rung);
     let default =
         if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
@@ -315,7 +315,7 @@ fn point(kind: &Kind, hull: &[&Step], step: &Step, href: Option<String>) -> Poin
         ms: four_digits(step.ms),
         error: four_digits(step.error),
         series: kind.series_of(&step.rung) + 1,
-        front: is_front(hull, step),
+        front: is_front(front, step),
         title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
         qualities,
         paper: kind.paper.contains(&step.rung.as_str()),

@@ -30,14 +30,14 @@ pub(super) fn table(name: &'static str, report: &Report, techniques: &[Technique
         .column("in the worst view", |(_, _, step, ..)| figure(step.worst))
         .column("ms", |(_, _, step, ..)| format!("{:.1}", step.ms))
         .column("× fast", |(_, _, step, fast, _)| format!("{:.1}", step.ms / fast.ms))
-        .column("next cheaper on the hull", |(_, _, step, _, cheaper)| {
+        .column("next cheaper on the front", |(_, _, step, _, cheaper)| {
             cheaper.map_or("-".to_owned(), |cheaper| {
                 let cut = 100.0 * (1.0 - step.error / cheaper.error);
                 format!("`{}`: {}, cut by {cut:.0} %", cheaper.rung, figure(cheaper.error))
             })
         })
         .note(format!(
-            "A default is on the hull of error against time (no faster rung errs less), and cuts the error of the next \
+            "A default is on the Pareto front (no faster rung errs less), and cuts the error of the next \
              cheaper there by at least {:.0} %; times within {:.0} % count as one.",
             100.0 * CUT,
             100.0 * SAME_TIME

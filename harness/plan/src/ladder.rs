@@ -123,41 +123,41 @@ impl Ladder {
         self.steps.iter().find(|step| step.rung == rung)
     }
 
-    /// Returns the rungs to choose from, by increasing time: no faster rung has a smaller error,
+    /// Returns the Pareto front, the rungs to choose from, by increasing time: no faster rung has a smaller error,
     /// and no rung of about the same time has an error smaller by [`CUT`].
     #[must_use]
-    pub fn hull(&self) -> Vec<&Step> {
+    pub fn front(&self) -> Vec<&Step> {
         let beaten = |step: &Step| {
             self.steps.iter().any(|other| {
                 let nearer = other.ms <= step.ms && other.error < step.error;
                 nearer || !other.is_dearer_than(step) && other.error <= (1.0 - CUT) * step.error
             })
         };
-        let mut hull: Vec<&Step> = self.steps.iter().filter(|step| !beaten(step)).collect();
-        hull.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+        let mut front: Vec<&Step> = self.steps.iter().filter(|step| !beaten(step)).collect();
+        front.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         // If pictures are the same up to rounding, keep the cheapest.
-        hull.dedup_by(|dear, cheap| ALIKE * dear.error >= cheap.error);
-        hull
+        front.dedup_by(|dear, cheap| ALIKE * dear.error >= cheap.error);
+        front
     }
 
-    /// Returns the rung on the hull that a default has to beat; `None` for the cheapest.
+    /// Returns the rung on the front that a default has to beat; `None` for the cheapest.
     #[must_use]
     pub fn next_cheaper(&self, step: &Step) -> Option<&Step> {
-        self.hull().into_iter().rev().find(|other| step.is_dearer_than(other))
+        self.front().into_iter().rev().find(|other| step.is_dearer_than(other))
     }
 
-    /// Checks that `rung` may be a default: it is on the hull, cuts the error by [`CUT`] compared
+    /// Checks that `rung` may be a default: it is on the Pareto front, cuts the error by [`CUT`] compared
     /// with the next cheaper rung there, and its worst view is no worse than that rung's.
     ///
     /// # Errors
     /// The reason why not, with the rung to use instead.
     pub fn judge(&self, rung: &str) -> Result<(), String> {
         let step = self.step(rung).ok_or_else(|| format!("`{rung}` is not in the ladder, or was not timed"))?;
-        let hull = self.hull();
+        let front = self.front();
         let shown =
             |step: &Step| format!("`{}` ({} {}, {:.1} ms)", step.rung, self.measure, figure(step.error), step.ms);
-        if !hull.iter().any(|other| other.rung == rung) {
-            let better = hull.iter().rev().find(|other| !other.is_dearer_than(step));
+        if !front.iter().any(|other| other.rung == rung) {
+            let better = front.iter().rev().find(|other| !other.is_dearer_than(step));
             let better = better.map_or_else(String::new, |better| format!("; take {}", shown(better)));
             return Err(format!("{} is dominated{better}", shown(step)));
         }
@@ -253,8 +253,8 @@ mod tests {
             ("c", 5.0, 0.37, 0.5),
             ("d", 9.0, 0.1, 0.6),
         ]);
-        let hull: Vec<&str> = ladder.hull().iter().map(|step| step.rung.as_str()).collect();
-        assert_eq!(hull, ["a", "b", "hardly dearer", "c", "d"]);
+        let front: Vec<&str> = ladder.front().iter().map(|step| step.rung.as_str()).collect();
+        assert_eq!(front, ["a", "b", "hardly dearer", "c", "d"]);
         let refused = |rung: &str| ladder.judge(rung).expect_err(rung);
         // A rung of the same cost up to noise is not one that a default has to beat.
         assert_eq!(["a", "b", "hardly dearer"].map(|rung| ladder.judge(rung)), [Ok(()), Ok(()), Ok(())]);

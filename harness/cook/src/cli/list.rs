@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
-    /// Print the modules as the table of the README.
+    /// Print the modules as the table of docs/modules.md.
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
 }
@@ -155,7 +155,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         output::line("| module | what it computes |\n|---|---|")?;
         for module in cookbook::modules() {
             let purpose = module.header.purpose.trim_end_matches('.');
-            output::line(&format!("| [{0}](docs/{0}.md) | {purpose} |", module.name))?;
+            output::line(&format!("| [{0}]({0}.md) | {purpose} |", module.name))?;
         }
         return Ok(Outcome::Passed);
     }

@@ -5,7 +5,7 @@ use super::{heading, of_kind, shown};
 use lapidary_plan::{Geometry, Quality, Rung, Technique};
 use serde::Serialize;
 
-/// Which rungs hold it, for the page.
+/// What holds it, for the page.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sixty {
     /// The GPU and its driver.
@@ -14,9 +14,7 @@ pub struct Sixty {
     size: String,
     /// Milliseconds that a frame has.
     least: String,
-    /// The rungs of stones, by time.
-    held: Vec<Held>,
-    /// The one nearest to the reference that holds.
+    /// The rung nearest to the reference that holds.
     nearest: Held,
     /// The default, if it was measured.
     default: Option<Held>,
@@ -29,10 +27,26 @@ pub struct Sixty {
 #[derive(Clone, Debug, Serialize)]
 struct Held {
     rung: String,
-    error: String,
     ms: String,
-    any_shape: bool,
     holds: bool,
+}
+
+/// Whether a ladder is of clear stones, whose frames were measured at the size of a screen.
+pub fn is_of_stones(kind: &Kind) -> bool {
+    kind.report == "gem"
+}
+
+/// Returns the milliseconds of a frame that a brilliant fills; `None` if that was not measured.
+fn filled(rung: &str) -> Option<f64> {
+    KINDS.iter().map(OnGpu::of).find(|on_gpu| on_gpu.fills)?.ms(rung)
+}
+
+/// Says whether a rung of stones holds 60 frames a second, with the time if the ladder's own is of smaller pictures;
+/// `None` if no such frame was measured.
+pub fn holds(kind: &Kind, rung: &str) -> Option<String> {
+    let ms = filled(rung).filter(|_| is_of_stones(kind))?;
+    let word = if ms <= SIXTIETH { "yes" } else { "no" };
+    Some(if OnGpu::of(kind).fills { word.to_owned() } else { format!("{word}, {} ms", shown(ms)) })
 }
 
 /// Returns the geometry of a rung that searches a stone by map or by hierarchy; `None` for the others.
@@ -55,39 +69,29 @@ pub fn nearest(kind: &Kind) -> Option<Rung> {
     holding.min_by(|a, b| a.error.total_cmp(&b.error))?.rung.parse().ok()
 }
 
-/// Returns which rungs by map and by hierarchy hold 60 frames a second, with their errors on the same stones.
+/// Returns the nearest rung that holds 60 frames a second, and the default beside it.
 ///
 /// # Panics
 /// If no rung does, or if the ladder of stones is gone, which a test finds.
 pub fn sixty() -> Sixty {
     let stones = KINDS.iter().find(|kind| kind.technique == Technique::Convex).expect("the ladder of convex stones");
-    let (on_gpu, ladder) = (OnGpu::of(stones), stones.technique.ladder().expect("a committed ladder"));
-    let row = |(rung, ms): &(String, f64)| Some((searched(rung)?, rung.clone(), ladder.step(rung)?.error, *ms));
-    let mut rows: Vec<_> = on_gpu.times.iter().filter_map(row).collect();
-    rows.sort_by(|a, b| a.3.total_cmp(&b.3));
-    let held = |(geometry, rung, error, ms): &(Geometry, String, f64, f64)| Held {
-        rung: rung.clone(),
-        error: format!("{error:.2}"),
-        ms: shown(*ms),
-        any_shape: *geometry == Geometry::Bvh,
-        holds: *ms <= SIXTIETH,
+    let report = &OnGpu::of(stones).report;
+    let held = |rung: Rung| {
+        let ms = filled(&rung.to_string())?;
+        Some(Held { rung: rung.to_string(), ms: shown(ms), holds: ms <= SIXTIETH })
     };
-    let best = nearest(stones).expect("a rung that holds").to_string();
-    let nearest = rows.iter().find(|row| row.1 == best).expect("it was timed");
-    let default = stones.technique.rung(Quality::default()).to_string();
-    let scattering = || KINDS.iter().filter(|kind| kind.report != "gem");
+    let scattering = || KINDS.iter().filter(|kind| !is_of_stones(kind));
     let longest = |kind: &'static Kind| {
         of_kind(kind).into_iter().filter_map(|choice| OnGpu::of(kind).ms(&choice.rung)).fold(0.0, f64::max)
     };
     Sixty {
-        adapter: on_gpu.report.adapter.clone(),
-        size: on_gpu.report.size(),
+        adapter: report.adapter.clone(),
+        size: report.size(),
         least: shown(SIXTIETH),
-        nearest: held(nearest),
-        default: rows.iter().find(|row| row.1 == default).map(held),
+        nearest: nearest(stones).and_then(held).expect("a rung that holds"),
+        default: held(stones.technique.rung(Quality::default())),
         small: scattering().map(|kind| heading(kind).gpu_size).next().unwrap_or_default(),
         longest: shown(scattering().map(longest).fold(0.0, f64::max)),
-        held: rows.iter().map(held).collect(),
     }
 }
 
@@ -96,19 +100,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_holds_stands_before_what_does_not_and_the_default_is_among_them() {
+    fn the_nearest_holds_and_no_choice_that_errs_less_does() {
         let sixty = sixty();
-        let held = &sixty.held;
-        assert!(held.iter().any(|of| of.holds) && held.iter().any(|of| !of.holds), "{held:?}");
-        assert!(held.is_sorted_by_key(|of| !of.holds), "{held:?}");
+        assert!(sixty.nearest.holds, "{sixty:?}");
+        let stones = Kind::named("convex").expect("there");
+        let choices = of_kind(stones);
+        let at = choices.iter().position(|choice| choice.rung == sixty.nearest.rung).expect("a row of the table");
+        assert_eq!(choices[at].sixty.as_deref(), Some("yes"), "{choices:?}");
+        // Rows stand by error, the greatest first.
+        assert!(choices[at + 1..].iter().all(|choice| choice.sixty.as_deref() != Some("yes")), "{choices:?}");
         let default = sixty.default.expect("the record has its frame");
-        assert!(held.iter().any(|of| of.rung == default.rung) && sixty.nearest.holds, "{default:?}");
+        assert!(choices.iter().any(|choice| choice.rung == default.rung && choice.is_default), "{default:?}");
+    }
+
+    #[test]
+    fn a_screen_was_measured_for_stones_alone() {
+        for kind in &KINDS {
+            let known: Vec<Option<String>> = of_kind(kind).into_iter().map(|choice| choice.sixty).collect();
+            assert_eq!(known.iter().any(Option::is_some), is_of_stones(kind), "{}: {known:?}", kind.name);
+            assert_eq!(heading(kind).filled_size.is_some(), is_of_stones(kind), "{}", kind.name);
+        }
     }
 
     #[test]
     fn scattering_bodies_were_measured_at_one_size() {
         let sizes: Vec<String> =
-            KINDS.iter().filter(|kind| kind.report != "gem").map(|kind| heading(kind).gpu_size).collect();
+            KINDS.iter().filter(|kind| !is_of_stones(kind)).map(|kind| heading(kind).gpu_size).collect();
         assert!(sizes.len() > 1 && sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
     }
 }

@@ -100,7 +100,7 @@ fn drawn(kind: &Kind, steps: &[&'static Step]) -> Vec<&'static str> {
 /// Whether a choice is made by this rung's picture: it is on the front, a default, the paper's, or asked for by name.
 pub(super) fn is_chosen(kind: &Kind, rung: &str) -> bool {
     let is_default = Quality::ALL.into_iter().any(|quality| kind.technique.rung(quality).to_string() == rung);
-    let is_front = kind.ladder().is_some_and(|ladder| ladder.hull().iter().any(|step| step.rung == rung));
+    let is_front = kind.ladder().is_some_and(|ladder| ladder.front().iter().any(|step| step.rung == rung));
     is_default || is_front || kind.paper.contains(&rung) || kind.others.contains(&rung)
 }
 

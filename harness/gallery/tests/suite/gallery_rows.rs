@@ -47,7 +47,7 @@ fn page(modules: &[&str]) -> Option<(TempDir, Page)> {
     let folder = tempfile::tempdir().expect("a folder");
     let summary = rows::write_of(folder.path(), |module| modules.contains(&module.name)).expect("written");
     assert!(summary.functions > 0 && summary.rows >= summary.functions * rows::DRAWN as usize, "{summary:?}");
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gallery/assets");
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/assets");
     std::fs::copy(assets.join("check.js"), folder.path().join("check.js")).expect("copied");
     let scripts = format!("<script>{SITE}</script>\n<script src=\"check.js\"></script>");
     let html = format!("<!DOCTYPE html>\n<html>\n<title>Rows</title>\n{scripts}\n</html>\n");

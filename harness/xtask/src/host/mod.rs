@@ -23,7 +23,7 @@ pub enum HostError {
         message: String,
     },
     /// A size or a number of workgroups has no formula, or another one.
-    #[error("recipe `{recipe}`, {what} in `{frame}`: {message}; see harness/cook/src/host/sizes.rs")]
+    #[error("recipe `{recipe}`, {what} in `{frame}`: {message}; see harness/xtask/src/host/sizes.rs")]
     Size {
         /// The recipe.
         recipe: String,

@@ -1,5 +1,6 @@
 // NAME: the difference of two squares; say here in one line what the technique computes.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Version: 0.2.0
 // Source: name the paper, book or specification, with equation numbers.
 
 // The difference of two squares, an example to be replaced: in two factors, since the difference of two nearby floats is exact and that of

@@ -5,8 +5,8 @@ use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::check::{Row, difference};
 use lapidary_cookbook as cookbook;
-use lapidary_ladders::builtins;
-use lapidary_ladders::page;
+use lapidary_ladders::{LADDERS, builtins, page};
+use lapidary_plan::Effect;
 use lapidary_snapshots::browse;
 use lapidary_testing::generated;
 use lapidary_testing::program::succeeds;
@@ -32,21 +32,27 @@ fn signatures_and_accuracies_are_as_they_were() {
     });
 }
 
+/// A pasted copy says from which release it is.
+#[test]
+fn every_module_states_the_release() {
+    for module in cookbook::modules() {
+        assert_eq!(module.header.version.as_deref(), Some(env!("CARGO_PKG_VERSION")), "{}", module.name);
+    }
+}
+
 /// The page of drivers shows the values of the records.
 #[test]
 fn the_drivers_are_as_recorded() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    let read = |name: &str| std::fs::read_to_string(docs.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let of = |folder: &str| -> builtins::Report {
-        serde_json::from_str(&read(&format!("measurements/{folder}/builtins.json"))).expect(folder)
+        serde_json::from_str(&read(&format!("docs/measurements/{folder}/builtins.json"))).expect(folder)
     };
     let builtins = builtins::side_by_side(&[
         ("lavapipe", of("lavapipe")),
         ("SwiftShader", of("swiftshader")),
         ("NVIDIA H200", of("nvidia_h200")),
     ]);
-    let rows: Vec<Row> = serde_json::from_str(&read("measurements/swiftshader/check.json")).expect("rows");
-    let page = read("drivers.md");
+    let rows: Vec<Row> = serde_json::from_str(&read("docs/measurements/swiftshader/check.json")).expect("rows");
+    let page = read("docs/drivers.md");
     let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");
     let filled = page::with_table(&filled, page::DIFFERENCES, &difference::table(&rows)).expect("sound marks");
     assert!(filled.contains(&builtins), "drivers.md has no place for the table `{}`", page::BUILTINS);
@@ -62,22 +68,126 @@ fn the_pictures_are_listed_with_their_captions() {
 /// The guide to choosing shows the planner's rungs, with the figures of the committed reports.
 #[test]
 fn the_guide_to_choosing_has_the_planners_rungs() {
-    let path = lapidary_cookbook::repository::place().join("docs/choosing.md");
-    let page = std::fs::read_to_string(path).expect("the page");
+    let page = read("docs/choosing.md");
     let part = lapidary_gallery::choices::page();
     let filled = page::with_table(&page, page::CHOICES, &part).expect("sound marks");
     assert!(filled.contains(&part), "choosing.md has no place for the tables `{}`", page::CHOICES);
     generated::keep("docs/choosing.md", &filled);
 }
 
-/// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
+/// The table of modules is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
 /// it.
 #[test]
-fn the_readme_lists_the_modules() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
-    let page = std::fs::read_to_string(&path).expect("the page");
-    let table = succeeds(std::path::Path::new("."), &["list", "--markdown"]).stdout;
+fn the_page_of_modules_lists_them() {
+    let page = read("docs/modules.md");
+    let table = succeeds(Path::new("."), &["list", "--markdown"]).stdout;
     let filled = page::with_table(&page, page::MODULES, &table).expect("sound marks");
-    assert!(filled.contains(&table), "README.md has no place for the table `{}`", page::MODULES);
-    generated::keep("README.md", &filled);
+    assert!(filled.contains(&table), "modules.md has no place for the table `{}`", page::MODULES);
+    generated::keep("docs/modules.md", &filled);
+}
+
+/// Reads a file by its path from the repository's folder.
+fn read(file: &str) -> String {
+    let path = cookbook::repository::place().join(file);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+/// Words of a Markdown text, code among them, without the targets of its links.
+fn words(text: &str) -> usize {
+    let mut parts = text.split("](");
+    let first = parts.next().unwrap_or_default();
+    let rest = parts.map(|part| part.split_once(')').map_or("", |(_, after)| after));
+    std::iter::once(first).chain(rest).collect::<String>().split_whitespace().count()
+}
+
+/// Who opens the repository reads what this is and what to type; the rest stands in `docs/`.
+#[test]
+fn the_readme_is_short() {
+    assert_eq!(words("a [link to](docs/a page.md) and `./cook list`"), 6);
+    let words = words(&read("README.md"));
+    assert!(words <= 600, "README.md has {words} words; docs/using.md has room");
+}
+
+/// A ladder that the page of ladders leaves out would be found by nobody.
+#[test]
+fn the_page_of_ladders_names_every_ladder() {
+    let page = read("docs/ladders.md");
+    for ladder in &LADDERS {
+        let command = format!("| `./cook cost {}` |", ladder.name);
+        assert!(page.contains(&command), "docs/ladders.md has no row {command}");
+    }
+}
+
+/// The page of plans says of every effect what calls for it.
+#[test]
+fn the_page_of_plans_names_every_effect() {
+    let page = read("docs/plan.md");
+    let names: Vec<&str> = part(&page, "## Which effects").lines().filter_map(|row| row.split('|').nth(1)).collect();
+    for effect in Effect::ALL {
+        let name = format!("`{effect}`");
+        assert!(names.iter().any(|cell| cell.contains(&name)), "docs/plan.md: no row of {name}");
+    }
+}
+
+/// Where an effect needs an entry; without one, the build or a test fails.
+const PLACES_OF_AN_EFFECT: [&str; 8] = [
+    "harness/plan/src/effect.rs",
+    "harness/plan/src/decision.rs",
+    "wgsl/recipes/",
+    "harness/render/src/",
+    "harness/render/tests/suite/plan.rs",
+    "harness/ladders/src/effects.rs",
+    "harness/xtask/src/host/sizes.rs",
+    "docs/plan.md",
+];
+
+#[test]
+fn what_an_effect_needs_is_told_and_there() {
+    let page = read("CONTRIBUTING.md");
+    let part = part(&page, "### An effect of a recipe");
+    for place in PLACES_OF_AN_EFFECT {
+        assert!(part.contains(&format!("\n| `{place}` |")), "CONTRIBUTING.md does not name {place}");
+    }
+    let paths = paths(part, &["harness/", "wgsl/", "docs/"]);
+    assert!(paths.len() > PLACES_OF_AN_EFFECT.len(), "{paths:?}");
+    let gone = gone(&paths);
+    assert!(gone.is_empty(), "CONTRIBUTING.md names {gone:?}, which are not there");
+}
+
+/// Files of the harness move; the pages that name them follow.
+#[test]
+fn the_paths_that_pages_name_are_there() {
+    let root = cookbook::repository::place();
+    let docs = std::fs::read_dir(root.join("docs")).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let pages = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    let pages = pages.chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|file| root.join(file)));
+    let mut named = 0;
+    for path in pages {
+        let text = std::fs::read_to_string(&path).expect("a page");
+        let paths = paths(&text, &["harness/", ".ci/"]);
+        named += paths.len();
+        let gone = gone(&paths);
+        assert!(gone.is_empty(), "{} names {gone:?}, which are not there", path.display());
+    }
+    assert!(named > 20, "{named}");
+}
+
+/// The text below a heading, up to the next one.
+fn part<'a>(page: &'a str, heading: &str) -> &'a str {
+    let (_, rest) = page.split_once(&format!("{heading}\n")).unwrap_or_else(|| panic!("no heading {heading}"));
+    rest.split("\n#").next().unwrap_or_default()
+}
+
+/// The paths in a text's `` `code` `` that begin in one of these ways; patterns, such as `crates/<name>/`, are none.
+fn paths<'a>(text: &'a str, starts: &[&str]) -> Vec<&'a str> {
+    let is_path = |code: &&str| {
+        let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-".contains(letter);
+        starts.iter().any(|start| code.starts_with(start)) && code.chars().all(plain)
+    };
+    text.split('`').filter(is_path).collect()
+}
+
+fn gone<'a>(paths: &[&'a str]) -> Vec<&'a str> {
+    let root = cookbook::repository::place();
+    paths.iter().filter(|path| !root.join(path).exists()).copied().collect()
 }
