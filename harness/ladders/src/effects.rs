@@ -404,6 +404,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long; .ci/full runs it"]
     fn more_effects_take_more() {
         for case in cases([16, 16]).expect("built in") {
             let of = |settings: &Settings| {

@@ -1,6 +1,7 @@
 //! The project's own workshop: the suite, new techniques, committed pictures, generated pages, lints.
 
 pub mod dist;
+mod executables;
 pub mod host;
 pub mod lint;
 pub mod new;

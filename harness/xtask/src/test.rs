@@ -1,10 +1,12 @@
 //! `cook test`.
 
+use crate::executables;
 use lapidary_cook::command::{Context, Failure, Outcome};
 use lapidary_cookbook::repository;
 use lapidary_gpu::ADAPTER_VARIABLE;
+use lapidary_testing::WHOLE_VARIABLE;
 use lapidary_testing::seed::{SEED_VARIABLE, SuiteSeed};
-use std::process::Command;
+use std::path::{Path, PathBuf};
 
 /// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
 #[derive(clap::Args)]
@@ -17,8 +19,8 @@ pub struct Arguments {
     /// Skip the mutation tests and the slowest of the others: takes about a minute.
     #[arg(long)]
     quick: bool,
-    /// Test everything instead of samples: every picture as displayed, beyond its linear radiance,
-    /// and every rung.
+    /// Test everything: no samples, every picture as displayed beyond its linear radiance, every rung, and the
+    /// tests that are marked as long.
     #[arg(long, conflicts_with = "quick")]
     whole: bool,
     /// Judge every mutant, not only those of modules that changed since the record.
@@ -29,10 +31,23 @@ pub struct Arguments {
     /// --all-mutants: only judge the mutants, and record the score.
     #[arg(long, conflicts_with_all = ["filter", "quick"])]
     refresh: bool,
+    /// Run also what has not changed since it passed.
+    #[arg(long)]
+    again: bool,
+    /// Write a table of each test's seconds; runs also what has not changed.
+    #[arg(long, value_name = "FILE", conflicts_with = "refresh")]
+    times: Option<PathBuf>,
     /// Also show what the tests measure.
     #[arg(long)]
     show: bool,
 }
+
+/// Cargo's names of the test programs.
+const TARGETS: [&str; 9] = ["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"];
+/// Those that can write what is generated.
+const REFRESHED: [&str; 7] = ["--package", "lapidary-cook", "--package", "lapidary-xtask", "--bins", "--test", "suite"];
+/// The mutation tests, which run last: they take long, and a test that fails says more.
+const MUTATION: [&str; 4] = ["--package", "lapidary-cook", "--test", "mutation"];
 
 /// Tests that a quick run skips: those whose names contain one of these.
 const SLOW: [&str; 39] = [
@@ -98,51 +113,107 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
     if is_short {
         eprintln!("left out: mutants, and the tests named {}", SLOW.join(", "));
     }
-    // Mutation tests run last and separately, because cargo stops at the first target that fails.
-    let parts: [&[&str]; 2] = [
-        &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
-        &["--package", "lapidary-cook", "--test", "mutation"],
-    ];
-    // Of both, so that the programs that the tests run are built.
-    let refreshing: [&[&str]; 1] = [&["--package", "lapidary-cook", "--package", "lapidary-xtask", "--test", "suite"]];
-    let parts = match arguments {
-        Arguments { refresh: true, all_mutants: true, .. } => &parts[1..],
-        Arguments { refresh: true, .. } => &refreshing[..],
-        Arguments { quick: true, .. } => &parts[..1],
-        _ => &parts[..],
-    };
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let filter: Vec<&str> = arguments.filter.iter().map(String::as_str).collect();
+    let mut environment =
+        vec![(ADAPTER_VARIABLE, context.adapter.to_string()), (SEED_VARIABLE, seed.value.to_string())];
+    if arguments.whole {
+        environment.push((WHOLE_VARIABLE, "1".to_owned()));
+    }
     let mut outcome = Outcome::Passed;
-    for part in parts {
-        let mut command = Command::new(&cargo);
-        command.arg("test").args(*part).arg("--manifest-path");
-        command.arg(root.join("Cargo.toml"));
-        command.env(ADAPTER_VARIABLE, context.adapter.to_string());
-        // The same seed for all parts, even if the tree changes meanwhile.
-        command.env(SEED_VARIABLE, seed.value.to_string());
-        if arguments.whole {
-            command.env("LAPIDARY_WHOLE", "1");
-        }
-        if arguments.all_mutants {
-            command.env("LAPIDARY_MUTANTS", if arguments.refresh { "record" } else { "all" });
-        }
-        command.arg("--").args(&arguments.filter);
-        if arguments.refresh && !arguments.all_mutants {
-            command.envs(REFRESHING).args(GENERATED);
+    if !(arguments.refresh && arguments.all_mutants) {
+        let mut options = filter.clone();
+        if arguments.refresh {
+            environment.extend(REFRESHING.map(|(name, value)| (name, value.to_owned())));
+            options.extend(GENERATED);
         }
         if is_short {
-            command.args(SLOW.iter().flat_map(|name| ["--skip", name]));
+            options.extend(SLOW.iter().flat_map(|name| ["--skip", name]));
+        }
+        if arguments.whole {
+            // What CI's weekly run has a stage for stays out.
+            options.extend(["--include-ignored", "--skip", "loader_survives"]);
         }
         if arguments.show {
-            command.arg("--nocapture");
+            options.push("--nocapture");
         }
-        let status = command.status();
-        let status = status.map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;
-        if !status.success() {
+        let targets: &[&str] = if arguments.refresh { &REFRESHED } else { &TARGETS };
+        if !suite(&root, arguments, targets, &options, &environment)? {
             outcome = Outcome::Failed;
         }
     }
+    if !is_short && (arguments.all_mutants || !arguments.refresh) && outcome == Outcome::Passed {
+        if arguments.all_mutants {
+            let asked = if arguments.refresh { "record" } else { "all" };
+            environment.push(("LAPIDARY_MUTANTS", asked.to_owned()));
+        }
+        for mutation in executables::built(&root, &MUTATION)? {
+            if !mutation.run_plainly(&filter, &environment)? {
+                outcome = Outcome::Failed;
+            }
+        }
+    }
     Ok(outcome)
+}
+
+/// Runs the test programs one after the other, and says in the end which failed and which were left out. What passes is
+/// remembered with a hash of all that it depends on, and is left out until that changes.
+fn suite(
+    root: &Path,
+    arguments: &Arguments,
+    targets: &[&str],
+    options: &[&str],
+    environment: &[(&'static str, String)],
+) -> Result<bool, Failure> {
+    let remembered = root.join("target/lapidary/passed");
+    // The commit's seed changes with each commit; with it alone nothing is run again.
+    let asked = (options, environment.iter().filter(|(name, _)| *name != SEED_VARIABLE).collect::<Vec<_>>());
+    let (mut failed, mut unchanged, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
+    for executable in executables::built(root, targets)? {
+        let file = remembered.join(executable.name.replace(' ', "_"));
+        let hash = executable.hash(root, &asked)?.to_string();
+        let may_skip = !arguments.again && !arguments.refresh && arguments.times.is_none();
+        if may_skip && std::fs::read_to_string(&file).is_ok_and(|passed| passed == hash) {
+            unchanged.push(executable.name);
+            continue;
+        }
+        eprintln!("{}:", executable.name);
+        let ran = executable.run(options, environment)?;
+        seconds.extend(ran.seconds.into_iter().map(|(test, seconds)| (seconds, executable.name.clone(), test)));
+        if ran.passed {
+            std::fs::create_dir_all(&remembered)?;
+            std::fs::write(file, hash)?;
+        } else {
+            failed.push(executable.name);
+        }
+    }
+    if let Some(file) = &arguments.times {
+        lapidary_render::file::replace(file, table(seconds).as_bytes())?;
+    }
+    if !unchanged.is_empty() {
+        eprintln!("unchanged since they passed, and not run again: {} (--again runs them)", unchanged.join(", "));
+    }
+    if !failed.is_empty() {
+        eprintln!("failed: {}", failed.join(", "));
+    }
+    Ok(failed.is_empty())
+}
+
+/// Returns the seconds of each test as a table, the longest first; those below a tenth of a second are added up.
+fn table(mut seconds: Vec<(f64, String, String)>) -> String {
+    seconds.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let total: f64 = seconds.iter().map(|(seconds, ..)| seconds).sum();
+    let mut text = format!(
+        "Seconds of each test, as ./cook test --times wrote them: {} tests, {total:.0} s added up, run on {} threads.\n\n",
+        seconds.len(),
+        std::thread::available_parallelism().map_or(1, usize::from)
+    );
+    let (long, short): (Vec<_>, Vec<_>) = seconds.into_iter().partition(|(seconds, ..)| *seconds >= 0.1);
+    for (seconds, executable, test) in &long {
+        text.push_str(&format!("{seconds:>8.1}  {executable:<18} {test}\n"));
+    }
+    let rest: f64 = short.iter().map(|(seconds, ..)| seconds).sum();
+    text.push_str(&format!("{rest:>8.1}  {} others\n", short.len()));
+    text
 }
 
 #[cfg(test)]

@@ -99,6 +99,7 @@ fn stones_are_whole() {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_body_with_shadows_is_whole() {
     is_whole("skin_ring");
 }

@@ -92,6 +92,7 @@ mod tests {
     /// On a body that shadows itself, Lambert's law with shadows is the better baseline, and the
     /// reflectance is closer still to the walks.
     #[test]
+    #[ignore = "long; .ci/full runs it"]
     fn shadows_bring_the_bunny_nearer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let rungs = vec![Reflectance::Lambert, Reflectance::Accurate];

@@ -269,6 +269,7 @@ fn the_record_of_spheres_is_what_walks_give() {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_reflectance_is_timed_written_and_shown_again() {
     let folder = folder();
     let arguments = ["cost", "cdrf", "--rungs", "lambert,cheap", "--rounds", "1", "--json", "--out", "report"];

@@ -110,6 +110,7 @@ fn two_scenes_and_a_light_that_were_looked_at_once() {
 /// Deep inside that is exact; what is scattered a few times keeps its direction, so that walks lie three times as far from the
 /// picture as those through the similar matter.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn forward_scattering_is_drawn_by_its_similar_matter() {
     let (side, g) = (32, 0.8);
     let even = Medium::isotropic(Vec3::new(0.8, 1.2, 2.0), Vec3::new(0.004, 0.02, 0.1));
@@ -147,6 +148,7 @@ fn cored(shell: f32) -> Scene {
 /// itself, so that the core is too dark; the flux limiter does not. In even matter it makes no difference, since at the
 /// surface the flux is limited already.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_core_in_thin_matter_is_nearer_to_walks_with_the_flux_limiter() {
     for (shell, most, [least_gain, most_gain]) in
         [(0.01, 0.36, [0.2, 0.45]), (0.05, 0.24, [0.02, 0.3]), (0.2, 0.1, [-0.05, 0.05])]
@@ -281,6 +283,7 @@ fn mean(picture: &Picture) -> Vec3 {
 
 /// A half space has a closed form: Chandrasekhar's law, and with a boundary the module's.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_wide_slab_is_as_bright_as_a_half_space() {
     // Mean free paths of .25 to 2, albedos of .99 to .7; the grid's spacing is 3.8 at 32 cells.
     let [scattering, absorption] = [Vec3::new(1.98, 0.98, 0.35), Vec3::new(0.02, 0.02, 0.15)];

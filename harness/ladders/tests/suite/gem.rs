@@ -29,6 +29,7 @@ fn moved(scene: &Scene, scale: f32, offset: Vec3) -> Scene {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn size_does_not_matter() {
     let cases = [
         ("brilliant", "proxy-4+tracker"),
@@ -112,6 +113,7 @@ fn the_papers_dispersion_depends_on_size() {
 /// With more hits, less light is left to estimate: the remainder dropped at the end falls with each
 /// hit.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn less_is_left_after_more_hits() {
     let scene = Scene::named("brilliant").expect("built in");
     let dropped = |rung: &str| {

@@ -153,6 +153,7 @@ fn a_narrow_spot_sends_out_its_share_of_a_lamps_light() {
 
 /// A lamp in the middle, one near the surface, and a spot, beside random walks.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_lamp_shines_through_a_body_as_walks_do() {
     let side = 16;
     let at = |z: f32| Vec3::new(0.0, 1.0, z);

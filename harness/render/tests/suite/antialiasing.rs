@@ -78,6 +78,7 @@ fn bright_edges_are_no_staircases() {
 
 /// Checks eight samples a side, and the reference.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn so_it_is_with_more_samples_and_with_the_reference() {
     let scene = Scene::named("brilliant").expect("built in");
     let rung = "convex-8+tracker".parse().expect("a rung");

@@ -23,6 +23,7 @@ fn some_scenes() -> Vec<&'static str> {
 
 /// By its own input, as a visitor moves it.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn every_slider_changes_the_picture() {
     for scene in some_scenes() {
         let Some(mut page) = running(scene, "") else { return };
@@ -228,6 +229,7 @@ fn no_control_slides_under_a_pointer() {
 /// The wheel is the page's until the picture is clicked, and again after Escape. With Ctrl too, by which one enlarges
 /// the page. Other buttons are the browser's.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_wheel_is_the_pages_until_a_click() {
     let Some(mut page) = running("brilliant", "") else { return };
     page.run("document.querySelector('.live canvas').scrollIntoView({ block: 'center', behavior: 'instant' });")
@@ -366,6 +368,7 @@ const MEASURES: &str = "
 
 /// A picture does not stand still for a measurement: what is changed stops it, which is said.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_change_stops_a_measurement() {
     let Some(mut page) = running("brilliant", "") else { return };
     let before = shown(&mut page);
@@ -399,6 +402,7 @@ fn a_change_stops_a_measurement() {
 
 /// A device that is lost, or draws no picture, is not timed, and what was said of it stays.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_faulty_device_is_not_timed() {
     let Some(mut page) = running("brilliant", "") else { return };
     let lost = format!(

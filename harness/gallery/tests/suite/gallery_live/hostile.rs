@@ -30,6 +30,7 @@ fn has_failed(page: &mut Page, words: &[&str]) -> String {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn without_a_device_the_picture_stands_there() {
     // Less than the picture's side.
     let small = limited(|name, default| if name == "maxTextureDimension2D" { 256 } else { default });
@@ -204,6 +205,7 @@ fn the_default_limits_are_enough_and_half_of_them_are_not() {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_lost_device_is_replaced() {
     let Some(mut page) = running("brilliant", "") else { return };
     let before = shown(&mut page);

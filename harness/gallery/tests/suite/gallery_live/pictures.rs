@@ -77,6 +77,7 @@ fn the_canvas_shows_what_the_renderer_draws() {
 
 /// The bounds see an index of refraction that is wrong by one step, and an eye that is wrong by half a degree.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_wrong_uniform_is_seen() {
     let Some(mut page) = running("brilliant", "") else { return };
     let live = live("brilliant");

@@ -105,6 +105,7 @@ fn white_furnace() {
 /// Walks from either end find the same light. The test compares means over sixteen parts of the
 /// image, for plain media, veins with forward scattering, several bodies, and lamps.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
     let mut veined = named("dragon");
     veined.objects[0].material.medium.as_mut().expect("a medium").anisotropy = 0.6;
@@ -261,6 +262,7 @@ fn hardly_any_light_begins_indirectly_at_both_ends() {
 
 /// Images of different seeds differ by their standard errors and no more: the strata can only help.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn errors_are_what_they_are_said_to_be() {
     for (origin, boundary) in ends_and_boundaries() {
         let [found, said] = variances(origin, boundary);

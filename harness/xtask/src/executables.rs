@@ -1,0 +1,157 @@
+//! The suite's test programs: cargo builds and lists them, and each is run by itself, so that what has not changed since
+//! it passed can be left out, and each test's seconds can be read.
+
+use lapidary_cook::command::Failure;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A test program.
+#[derive(Clone, Debug)]
+pub(crate) struct Executable {
+    /// The package's folder, in which cargo runs the program.
+    folder: PathBuf,
+    /// Package and target, such as `render suite`.
+    pub(crate) name: String,
+    path: PathBuf,
+}
+
+/// Builds the test programs that these arguments of `cargo test` name, and lists them.
+pub(crate) fn built(root: &Path, targets: &[&str]) -> Result<Vec<Executable>, Failure> {
+    let mut command = Command::new(cargo());
+    command.arg("test").args(targets).args([
+        "--no-run",
+        "--message-format",
+        "json-render-diagnostics",
+        "--manifest-path",
+    ]);
+    command.arg(root.join("Cargo.toml")).stdout(Stdio::piped());
+    let failed = |error: std::io::Error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?"));
+    let mut child = command.spawn().map_err(failed)?;
+    let mut found = Vec::new();
+    for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(|lines| lines.lines()) {
+        let Ok(message) = serde_json::from_str::<Value>(&line.map_err(failed)?) else { continue };
+        found.extend(executable(&message));
+    }
+    if !child.wait().map_err(failed)?.success() {
+        return Err(Failure("the tests do not build; cargo's messages are above".to_owned()));
+    }
+    found.sort_by(|one: &Executable, other| one.name.cmp(&other.name));
+    Ok(found)
+}
+
+fn cargo() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// Returns the test program that a message of cargo's is about.
+fn executable(message: &Value) -> Option<Executable> {
+    if message["reason"] != "compiler-artifact" || message["profile"]["test"] != true {
+        return None;
+    }
+    let path = PathBuf::from(message["executable"].as_str()?);
+    let folder = Path::new(message["manifest_path"].as_str()?).parent()?.to_owned();
+    let package = folder.file_name()?.to_string_lossy().into_owned();
+    let kind = message["target"]["kind"][0].as_str()?;
+    let target = if kind == "test" { message["target"]["name"].as_str()? } else { kind };
+    Some(Executable { name: format!("{package} {target}"), folder, path })
+}
+
+/// How a run went.
+pub(crate) struct Ran {
+    pub(crate) passed: bool,
+    /// Seconds of each test, by its name.
+    pub(crate) seconds: BTreeMap<String, f64>,
+}
+
+impl Executable {
+    /// Runs the tests, and shows what the program prints.
+    pub(crate) fn run(&self, arguments: &[&str], environment: &[(&str, String)]) -> Result<Ran, Failure> {
+        let mut command = Command::new(&self.path);
+        command.current_dir(&self.folder).args(arguments).envs(environment.iter().map(|(name, value)| (name, value)));
+        // libtest tells a test's time to those who may use what is unstable.
+        command.args(["-Z", "unstable-options", "--report-time"]).env("RUSTC_BOOTSTRAP", "1");
+        command.env("CARGO", cargo()).stdout(Stdio::piped());
+        let failed = |error: std::io::Error| Failure(format!("{}: cannot be run: {error}", self.path.display()));
+        let mut child = command.spawn().map_err(failed)?;
+        let mut seconds = BTreeMap::new();
+        let mut stdout = std::io::stdout().lock();
+        for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
+            let line = line.map_err(failed)?;
+            seconds.extend(timed(&String::from_utf8_lossy(&line)));
+            let _ = stdout.write_all(&line).and_then(|()| stdout.write_all(b"\n"));
+        }
+        Ok(Ran { passed: child.wait().map_err(failed)?.success(), seconds })
+    }
+
+    /// Runs a program that has a `main` of its own.
+    pub(crate) fn run_plainly(&self, arguments: &[&str], environment: &[(&str, String)]) -> Result<bool, Failure> {
+        let mut command = Command::new(&self.path);
+        command.current_dir(&self.folder).args(arguments).envs(environment.iter().map(|(name, value)| (name, value)));
+        let status = command.env("CARGO", cargo()).status();
+        Ok(status.map_err(|error| Failure(format!("{}: cannot be run: {error}", self.path.display())))?.success())
+    }
+
+    /// Returns a hash of all that the tests depend on: the program itself, in which all Rust and WGSL is, the files and
+    /// programs of the repository that it may read or run, and what is asked of it.
+    pub(crate) fn hash(&self, root: &Path, asked: &impl std::hash::Hash) -> std::io::Result<u64> {
+        let mut hasher = DefaultHasher::new();
+        asked.hash(&mut hasher);
+        std::fs::read(&self.path)?.hash(&mut hasher);
+        for file in read_by_tests(root, &self.folder)? {
+            file.hash(&mut hasher);
+            std::fs::read(root.join(&file)).unwrap_or_default().hash(&mut hasher);
+        }
+        if let Some(programs) = self.path.ancestors().nth(2) {
+            for program in ["cook", "gallery", "ladders", "xtask"] {
+                std::fs::read(programs.join(program)).unwrap_or_default().hash(&mut hasher);
+            }
+        }
+        Ok(hasher.finish())
+    }
+}
+
+/// Returns the test and the seconds of one of libtest's lines: `test a::b ... ok <1.234s>`.
+fn timed(line: &str) -> Option<(String, f64)> {
+    let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
+    let seconds = rest.rsplit_once('<')?.1.strip_suffix("s>")?.parse().ok()?;
+    Some((name.to_owned(), seconds))
+}
+
+/// Returns the files that tests may read while they run: all that git knows but for Rust's, which the programs hold. A
+/// mirror's own tests read none but those of their folder.
+fn read_by_tests(root: &Path, folder: &Path) -> std::io::Result<Vec<String>> {
+    let mut git = Command::new("git");
+    git.arg("-C").arg(root).args(["ls-files", "--cached", "--others", "--exclude-standard", "-z"]);
+    let text = String::from_utf8(git.output()?.stdout).map_err(std::io::Error::other)?;
+    let is_mirror = folder.parent().is_some_and(|parent| parent.ends_with("crates"));
+    let read = |file: &&str| !file.ends_with(".rs") && (!is_mirror || root.join(file).starts_with(folder));
+    Ok(text.split('\0').filter(|file| !file.is_empty()).filter(read).map(str::to_owned).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tests_seconds_are_read() {
+        assert_eq!(timed("test a::b ... ok <1.250s>"), Some(("a::b".to_owned(), 1.25)));
+        assert_eq!(timed("test a ... FAILED <0.5s>"), Some(("a".to_owned(), 0.5)));
+        for line in ["running 3 tests", "test a ... ignored", "test result: ok. 3 passed"] {
+            assert_eq!(timed(line), None);
+        }
+    }
+
+    #[test]
+    fn a_program_is_known_by_its_package_and_target() {
+        let message = serde_json::json!({
+            "reason": "compiler-artifact", "profile": { "test": true }, "executable": "/t/debug/deps/suite-1",
+            "manifest_path": "/r/harness/render/Cargo.toml", "target": { "name": "suite", "kind": ["test"] },
+        });
+        assert_eq!(executable(&message).expect("a test").name, "render suite");
+        assert!(executable(&serde_json::json!({ "reason": "build-finished" })).is_none());
+    }
+}
