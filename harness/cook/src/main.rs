@@ -2,6 +2,15 @@
 
 mod cli;
 
-fn main() -> std::process::ExitCode {
+use std::process::ExitCode;
+
+/// Commands that the launcher `./cook` has besides, from programs that stay in the repository.
+const IN_THE_REPOSITORY: [&str; 7] = ["builtins", "cost", "dist", "gallery", "new", "snapshots", "test"];
+
+fn main() -> ExitCode {
+    if let Some(command) = std::env::args().nth(1).filter(|word| IN_THE_REPOSITORY.contains(&word.as_str())) {
+        eprintln!("cook: `{command}` is a command of the cookbook's repository; clone it and run ./cook {command} there");
+        return ExitCode::from(2);
+    }
     cli::run()
 }
