@@ -15,11 +15,13 @@
 mod color;
 mod filter;
 mod magma;
+mod rows;
 
 pub use magma::magma;
 
-use color::{hyab, luminance, opponent, perceived, perceived_of_opponent};
-use filter::{Features, Plane, Sensitivity, filter_row, pad};
+use color::{hyab, perceived};
+use filter::{Features, Sensitivity};
+use rows::{Row, Rows};
 
 /// Pixels per degree of visual angle: a display 0.7 m wide of 3840 pixels, seen from 0.7 m, as in the paper.
 pub const PIXELS_PER_DEGREE: f32 = 67.0;
@@ -39,10 +41,10 @@ const FEATURE_EXPONENT: f32 = 0.5;
 /// sRGB, row by row, 3 bytes a pixel, of this width and height. Exchanging them changes nothing. Beyond the edges,
 /// pictures go on as at the edge. Without pixels there are no errors.
 ///
-/// Source: Andersson et al. 2020, and the separated filters of the published implementation, 1.2 and later.
+/// Source: Andersson et al. 2020, with the filters separated as in NVIDIA's implementation.
 ///
 /// # Panics
-/// Panics if a picture has not `3 * width * height` bytes.
+/// Panics if a picture does not have `3 * width * height` bytes.
 pub fn flip((width, height): (u32, u32), reference: &[u8], test: &[u8]) -> Vec<f32> {
     let (width, height) = (width as usize, height as usize);
     for (which, picture) in [("reference", reference), ("test picture", test)] {
@@ -56,7 +58,7 @@ pub fn flip((width, height): (u32, u32), reference: &[u8], test: &[u8]) -> Vec<f
     let features = Features::new(PIXELS_PER_DEGREE);
     let range = ColorRange::new();
     let [reference, test] = [reference, test].map(|picture| Rows::new(picture, width, &sensitivity, &features));
-    let mut seen = [(); 2].map(|()| Row::new(reference.stride()));
+    let mut seen = [(); 2].map(|()| Row::new(width));
     let mut errors = vec![0.0; width * height];
     for (y, errors) in errors.chunks_exact_mut(width).enumerate() {
         for (row, rows) in seen.iter_mut().zip([&reference, &test]) {
@@ -98,117 +100,20 @@ impl ColorRange {
         if compressed < self.knee {
             return KNEE_ERROR / self.knee * compressed;
         }
-        KNEE_ERROR + (1.0 - KNEE_ERROR) * (compressed - self.knee) / (self.largest - self.knee)
+        let beyond = (compressed - self.knee) / (self.largest - self.knee);
+        // Rounding may exceed the largest.
+        KNEE_ERROR + (1.0 - KNEE_ERROR) * beyond.min(1.0)
     }
 }
 
 /// Maps the difference of two edges and two points to 0 to 1.
 fn feature_error([edge, point]: [f32; 2], [other_edge, other_point]: [f32; 2]) -> f32 {
     let largest = (edge - other_edge).abs().max((point - other_point).abs());
-    // Both derivatives reach √2.
-    (largest * std::f32::consts::FRAC_1_SQRT_2).powf(FEATURE_EXPONENT)
+    // A derivative reaches 1 along x and along y, so √2 together, which rounding may exceed.
+    (largest * std::f32::consts::FRAC_1_SQRT_2).min(1.0).powf(FEATURE_EXPONENT)
 }
 
 /// Raises a difference of colour where features differ too.
 fn combined(color: f32, feature: f32) -> f32 {
     color.powf(1.0 - feature)
-}
-
-/// A picture's opponent colours and features, filtered along the rows.
-struct Rows {
-    achromatic: Plane,
-    red_green: Plane,
-    blue_yellow: [Plane; 2],
-    smooth: Plane,
-    edge: Plane,
-    point: Plane,
-}
-
-impl Rows {
-    fn new(picture: &[u8], width: usize, sensitivity: &Sensitivity, features: &Features) -> Self {
-        let linear = color::linear_values();
-        let height = picture.len() / (3 * width);
-        let plane = || Plane::new(width, height);
-        let mut rows = Self {
-            achromatic: plane(),
-            red_green: plane(),
-            blue_yellow: [plane(), plane()],
-            smooth: plane(),
-            edge: plane(),
-            point: plane(),
-        };
-        let (radius, feature_radius) = (sensitivity.radius(), features.radius());
-        let mut padded = vec![0.0; rows.stride() + 2 * radius];
-        let mut padded_luminance = vec![0.0; rows.stride() + 2 * feature_radius];
-        let mut colors = Vec::with_capacity(width);
-        for (y, row) in picture.chunks_exact(3 * width).enumerate() {
-            colors.clear();
-            let light = |code: &u8| linear[usize::from(*code)];
-            colors.extend(row.chunks_exact(3).map(|c| opponent([light(&c[0]), light(&c[1]), light(&c[2])])));
-            let channel = |channel: usize| colors.iter().map(move |color| color[channel]);
-            pad(channel(0), radius, &mut padded);
-            filter_row(&padded, &sensitivity.achromatic, rows.achromatic.row_mut(y));
-            pad(channel(1), radius, &mut padded);
-            filter_row(&padded, &sensitivity.red_green, rows.red_green.row_mut(y));
-            pad(channel(2), radius, &mut padded);
-            for (kernel, plane) in sensitivity.blue_yellow.iter().zip(&mut rows.blue_yellow) {
-                filter_row(&padded, kernel, plane.row_mut(y));
-            }
-            pad(channel(0).map(luminance), feature_radius, &mut padded_luminance);
-            filter_row(&padded_luminance, &features.gaussian, rows.smooth.row_mut(y));
-            filter_row(&padded_luminance, &features.edge, rows.edge.row_mut(y));
-            filter_row(&padded_luminance, &features.point, rows.point.row_mut(y));
-        }
-        rows
-    }
-
-    fn stride(&self) -> usize {
-        self.achromatic.stride()
-    }
-
-    /// Filters down the columns, which completes the row `y`.
-    fn filter_columns(&self, y: usize, sensitivity: &Sensitivity, features: &Features, row: &mut Row) {
-        self.achromatic.filter_column(y, &sensitivity.achromatic, &mut row.achromatic);
-        self.red_green.filter_column(y, &sensitivity.red_green, &mut row.red_green);
-        for k in 0..2 {
-            self.blue_yellow[k].filter_column(y, &sensitivity.blue_yellow[k], &mut row.blue_yellow[k]);
-        }
-        self.edge.filter_column(y, &features.gaussian, &mut row.edge[0]);
-        self.smooth.filter_column(y, &features.edge, &mut row.edge[1]);
-        self.point.filter_column(y, &features.gaussian, &mut row.point[0]);
-        self.smooth.filter_column(y, &features.point, &mut row.point[1]);
-    }
-}
-
-/// One row of a picture, filtered in both directions.
-struct Row {
-    achromatic: Vec<f32>,
-    red_green: Vec<f32>,
-    /// The two Gaussians, to be added.
-    blue_yellow: [Vec<f32>; 2],
-    /// First derivatives along x and y.
-    edge: [Vec<f32>; 2],
-    /// Second derivatives along x and y.
-    point: [Vec<f32>; 2],
-}
-
-impl Row {
-    fn new(stride: usize) -> Self {
-        let values = || vec![0.0; stride];
-        let pair = || [values(), values()];
-        Self { achromatic: values(), red_green: values(), blue_yellow: pair(), edge: pair(), point: pair() }
-    }
-
-    fn color(&self, x: usize) -> [f32; 3] {
-        let blue_yellow = self.blue_yellow[0][x] + self.blue_yellow[1][x];
-        perceived_of_opponent([self.achromatic[x], self.red_green[x], blue_yellow])
-    }
-
-    /// Returns how much of an edge and how much of a point there is, in all directions together.
-    fn features(&self, x: usize) -> [f32; 2] {
-        [&self.edge, &self.point].map(|[along_x, along_y]| {
-            let (dx, dy) = (along_x[x], along_y[x]);
-            (dx * dx + dy * dy).sqrt()
-        })
-    }
 }
