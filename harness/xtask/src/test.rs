@@ -1,5 +1,6 @@
 //! `cook test`.
 
+use crate::defects;
 use lapidary_cook::command::{Context, Failure, Outcome};
 use lapidary_cookbook::repository;
 use lapidary_gpu::ADAPTER_VARIABLE;
@@ -9,7 +10,7 @@ use std::process::Command;
 /// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show"
+    after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show\n  ./cook test --defects wgsl/fresnel"
 )]
 pub struct Arguments {
     /// Run only the tests whose names contain this text.
@@ -29,6 +30,10 @@ pub struct Arguments {
     /// score.
     #[arg(long, conflicts_with_all = ["filter", "quick"])]
     refresh: bool,
+    /// Plant the defects of harness/xtask/defects.txt one by one, in a copy of the working tree, and
+    /// expect a test to fail of each; FILTER chooses by their words, files, tests or numbers.
+    #[arg(long, conflicts_with_all = ["quick", "whole", "all_mutants", "refresh", "show"])]
+    defects: bool,
     /// Also show what the tests measure.
     #[arg(long)]
     show: bool,
@@ -99,6 +104,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
     context.gpu()?;
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
+    if arguments.defects {
+        return defects::run(context, arguments.filter.as_deref(), seed.value);
+    }
     // Tests that are named explicitly are always run.
     let is_short = arguments.quick && arguments.filter.is_none();
     if is_short {

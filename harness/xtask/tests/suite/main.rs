@@ -1,6 +1,7 @@
 //! Tests of the repository: its structure, contract, pages and examples.
 
 mod contract;
+mod defects;
 mod engines;
 mod host;
 mod structure;
