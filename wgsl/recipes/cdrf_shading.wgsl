@@ -425,11 +425,11 @@ fn cdrf_translucent(
     let depth = CDRF_LOST_SIDEWAYS * shadow.way / max(material.free_path, vec3f(1e-12f));
     let passed = vec3f(
         diffusion_slab(depth.x, material.law.gamma.x, material.milne)
-            * scattering_law_passed(shadow.cosine.x, material.law),
+        * scattering_law_passed(shadow.cosine.x, material.law),
         diffusion_slab(depth.y, material.law.gamma.y, material.milne)
-            * scattering_law_passed(shadow.cosine.y, material.law),
+        * scattering_law_passed(shadow.cosine.y, material.law),
         diffusion_slab(depth.z, material.law.gamma.z, material.milne)
-            * scattering_law_passed(shadow.cosine.z, material.law),
+        * scattering_law_passed(shadow.cosine.z, material.law),
     );
     let seen = 0.31830987f * material.law.light * scattering_law_inside(cosine_eye, material.law);
     return max(law * spread, shadow.cosine * passed * seen);

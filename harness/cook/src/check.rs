@@ -3,6 +3,7 @@
 
 pub mod bounds;
 pub mod difference;
+pub mod differing;
 pub mod guard;
 pub mod in_browser;
 pub mod seeds;

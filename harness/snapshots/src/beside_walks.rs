@@ -1,10 +1,12 @@
 //! Scattering bodies compared with random walks: a row for each scene with each way of drawing it, the walks,
 //! and what is between the last way and the walks.
 
+use super::error::SnapshotError;
 use super::frames::{halved, side_by_side};
 use super::label::label;
 use super::shots::LIGHTS_ALONE;
-use super::{EXR_SIDE, SnapshotError, WalkedReference};
+use super::sizes::EXR_SIDE;
+use super::walked::WalkedReference;
 use crate::exposure::best_exposure;
 use lapidary_gpu::Gpu;
 use lapidary_plan::ladder::Record;

@@ -1,6 +1,7 @@
 //! `snapshots/README.md`: the committed pictures with their captions, to be browsed without a build.
 
-use super::{Committed, WALKED};
+use super::committed::Committed;
+use super::walked::WALKED;
 use std::fmt::Write as _;
 
 /// The folders of pictures, each with its heading.
@@ -55,8 +56,8 @@ fn rung(picture: Committed) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{SHOTS, beside_walks};
     use super::*;
+    use crate::{SHOTS, beside_walks};
 
     #[test]
     fn every_picture_stands_on_the_page_once() {

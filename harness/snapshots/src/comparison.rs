@@ -1,6 +1,7 @@
 //! Comparison of a new picture with its reference.
 
-use super::{SnapshotError, read};
+use super::error::SnapshotError;
+use super::files::read;
 use lapidary_render::{Picture, file};
 use std::path::Path;
 

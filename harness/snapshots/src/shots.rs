@@ -1,6 +1,7 @@
 //! Pictures of a single scene each, and the commands that render them.
 
-use super::{PNG_SIDE, folder};
+use super::files::folder;
+use super::sizes::PNG_SIDE;
 use lapidary_plan::{Decisions, Effect, Effects, Outside, Quality, Rung};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, MOST_SAMPLES, Settings};
 use lapidary_scene::{SAMPLES, Scene, SceneError};

@@ -1,7 +1,7 @@
 //! Translucent stone in motion: frames side by side, each with its own voxels, maps, seeds and
 //! costs. Nothing is kept from one frame to the next.
 
-use super::SnapshotError;
+use super::error::SnapshotError;
 use super::frames::{halved, side_by_side};
 use crate::motion::Motion;
 use lapidary_gpu::Gpu;

@@ -1,7 +1,9 @@
 //! Committed references by random walks.
 
+use super::error::SnapshotError;
+use super::files::{folder, reference_picture};
 use super::shots::LIGHTS_ALONE;
-use super::{EXR_SIDE, SnapshotError, folder, reference_picture};
+use super::sizes::EXR_SIDE;
 use lapidary_gpu::Gpu;
 use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_render::{Picture, Settings};

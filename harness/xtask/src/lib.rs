@@ -1,5 +1,6 @@
 //! The project's own workshop: the suite, new techniques, committed pictures, generated pages, lints.
 
+pub mod defects;
 pub mod dist;
 mod executables;
 pub mod host;

@@ -1,5 +1,6 @@
 //! `cook test`.
 
+use crate::defects;
 use crate::executables;
 use lapidary_cook::command::{Context, Failure, Outcome};
 use lapidary_cookbook::repository;
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show"
+    after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show\n  ./cook test --defects wgsl/fresnel"
 )]
 pub struct Arguments {
     /// Run only the tests whose names contain this text.
@@ -37,6 +38,10 @@ pub struct Arguments {
     /// Write a table of each test's seconds; runs also what has not changed.
     #[arg(long, value_name = "FILE", conflicts_with = "refresh")]
     times: Option<PathBuf>,
+    /// Plant the defects of harness/xtask/defects.txt one by one, in a copy of the working tree, and
+    /// expect a test to fail of each; FILTER chooses by their words, files, tests or numbers.
+    #[arg(long, conflicts_with_all = ["quick", "whole", "all_mutants", "refresh", "show"])]
+    defects: bool,
     /// Also show what the tests measure.
     #[arg(long)]
     show: bool,
@@ -108,6 +113,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
     context.gpu()?;
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
+    if arguments.defects {
+        return defects::run(context, arguments.filter.as_deref(), seed.value);
+    }
     // Tests that are named explicitly are always run.
     let is_short = arguments.quick && arguments.filter.is_none();
     if is_short {

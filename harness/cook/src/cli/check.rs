@@ -12,6 +12,7 @@ use lapidary_cook::check::guard::{self, Stage};
 use lapidary_cook::check::seeds;
 use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
+use text::Checked;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -91,15 +92,6 @@ impl Shard {
         let Self { index, count } = shard.unwrap_or(Self { index: 1, count: 1 });
         all.into_iter().skip(index - 1).step_by(count).collect()
     }
-}
-
-/// Results of a check, with notes.
-#[derive(Default)]
-struct Checked {
-    /// The two sides of the comparison.
-    about: String,
-    rows: Vec<Row>,
-    notes: Vec<String>,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {

@@ -1,7 +1,6 @@
 //! `cook completions`.
 
 use super::{Failure, Outcome, output};
-use clap::CommandFactory;
 
 /// Prints a script with which a shell completes commands and options, and values where an option has few.
 #[derive(clap::Args)]
@@ -14,9 +13,9 @@ pub(super) struct Arguments {
     shell: clap_complete::Shell,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+pub(super) fn run(arguments: &Arguments, mut program: clap::Command) -> Result<Outcome, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut super::Arguments::command(), "cook", &mut script);
+    clap_complete::generate(arguments.shell, &mut program, "cook", &mut script);
     output::bytes(&script)?;
     Ok(Outcome::Passed)
 }

@@ -12,13 +12,13 @@ mod plan;
 mod render;
 mod scene;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use lapidary_cook::command::{self, Common, Context, Failure, Outcome, browser, named, number, output, progress};
 use std::process::ExitCode;
 
 /// A shader cookbook for gems: copy the WGSL, test its formulas, look at the pictures.
 #[derive(Parser)]
-#[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: cook render brilliant")]
+#[command(name = "cook", bin_name = "cook", version, arg_required_else_help = true, after_help = "Example: cook render brilliant")]
 struct Arguments {
     #[command(flatten)]
     common: Common,
@@ -52,7 +52,7 @@ pub(crate) fn run() -> ExitCode {
             Command::Render(arguments) => render::run(&context, &arguments),
             Command::Scene(arguments) => scene::run(&arguments),
             Command::Compare(arguments) => compare::run(&arguments),
-            Command::Completions(arguments) => completions::run(&arguments),
+            Command::Completions(arguments) => completions::run(&arguments, Arguments::command()),
         }
     })
 }

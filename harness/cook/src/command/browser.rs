@@ -1,6 +1,6 @@
 //! Browser of a command: started at most once, and closed when the command ends.
 
-use super::Failure;
+use super::failure::Failure;
 use lapidary_browser::{Adapter, Browser};
 use std::sync::OnceLock;
 

@@ -4,34 +4,18 @@
 //! that failed, 2 for bad usage or bad input, with one clear line on stderr.
 
 pub mod browser;
+mod failure;
 pub mod named;
 pub mod number;
 pub mod output;
 pub mod progress;
 
+pub use failure::{Failure, Outcome};
+
 use clap::Parser;
 use clap::error::ErrorKind;
 use lapidary_gpu::{AdapterChoice, Gpu};
 use std::process::ExitCode;
-
-/// Whether the checks passed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// All checks passed.
-    Passed,
-    /// A check ran and failed.
-    Failed,
-}
-
-/// One clear line: the problem, where it is, and what to do.
-#[derive(Debug)]
-pub struct Failure(pub String);
-
-impl<E: std::error::Error> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self(error.to_string())
-    }
-}
 
 /// Options that every command takes.
 #[derive(Clone, Debug, clap::Args)]

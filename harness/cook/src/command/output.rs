@@ -1,6 +1,6 @@
 //! Output of commands on stdout. A failed write is an error, unless the reader has closed the pipe.
 
-use super::Failure;
+use super::failure::Failure;
 use std::io::Write as _;
 
 /// Writes a line.

@@ -20,13 +20,23 @@ fn without_arguments_it_prints_help() {
     let answer = cook(folder().path(), &[] as &[&str]);
     assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
     let help = answer.stdout + &answer.stderr;
-    for command in
-        ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "compare", "--adapter"]
-    {
+    for command in ["check", "list", "copy", "plan", "frame", "render", "scene", "compare", "completions", "--adapter"] {
         assert!(help.contains(command), "{command}: {help}");
     }
     let asked = succeeds(folder().path(), &["--help"]);
-    assert!(asked.stdout.contains("gallery"));
+    assert!(asked.stdout.contains("render"));
+}
+
+/// What stays in the repository is named as such, whether the repository is there or not.
+#[test]
+fn a_command_of_the_repository_is_told_from_an_unknown_one() {
+    let program = cook(folder().path(), &["--version"]);
+    assert_eq!(program.code, Some(0), "{program:?}");
+    let binary = std::env::current_exe().expect("a path").ancestors().nth(2).expect("a folder").join("cook");
+    let output = std::process::Command::new(binary).args(["gallery", "--open"]).output().expect("cook runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("`gallery` is a command of the cookbook's repository"), "{said}");
 }
 
 #[test]
@@ -293,7 +303,7 @@ fn shells_complete_commands_and_options() {
     let folder = folder();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = succeeds(folder.path(), &["completions", shell]).stdout;
-        assert!(script.contains("snapshots") && script.contains("material"), "{shell}: {script}");
+        assert!(script.contains("compare") && script.contains("material"), "{shell}: {script}");
     }
 }
 

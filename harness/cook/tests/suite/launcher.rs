@@ -117,3 +117,29 @@ fn a_first_build_is_announced_and_its_failure_is_bad_input() {
     assert_eq!((code, stdout.as_str()), (Some(2), ""), "{stderr}");
     assert!(stderr.contains("cook: building") && stderr.contains("error: no"), "{stderr}");
 }
+
+/// The launcher's help, which needs no build, has the commands of every program, and no others.
+#[test]
+fn the_help_lists_the_commands_of_every_program() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let help = Command::new("bash").arg("cook").current_dir(root).output().expect("bash runs").stdout;
+    let help = String::from_utf8(help).expect("UTF-8");
+    let listed = |text: &str| -> Vec<String> {
+        let words = text.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+        let mut words: Vec<String> =
+            words.filter(|word| word.starts_with(|first: char| first.is_ascii_lowercase())).map(str::to_owned).collect();
+        words.sort();
+        words
+    };
+    let programs = std::env::current_exe().expect("the test's own path");
+    let programs = programs.ancestors().nth(2).expect("the build folder");
+    let mut all = Vec::new();
+    for program in ["cook", "ladders", "gallery", "xtask"] {
+        let output = Command::new(programs.join(program)).arg("--help").output();
+        let output = output.unwrap_or_else(|error| panic!("{program}: {error}; `cargo test --workspace` builds it"));
+        all.extend(listed(&String::from_utf8(output.stdout).expect("UTF-8")));
+    }
+    all.retain(|word| word != "help");
+    all.sort();
+    assert_eq!(listed(&help), all, "{help}");
+}

@@ -8,7 +8,6 @@ mod comparator;
 mod constants;
 mod formulas;
 mod hard_cases;
-mod languages;
 #[cfg(unix)]
 mod launcher;
 mod outside;

@@ -1,37 +1,23 @@
 //! `cook dist`: the modules and recipes in every language, as files to take along.
 
 pub mod command;
+mod error;
 pub mod npm;
+mod whole;
+
+pub use error::DistError;
+pub use whole::Whole;
 
 use lapidary_cookbook::folder::{self, FolderError, Owner};
-use lapidary_cookbook::{marks, modules};
-use lapidary_translate::{Language, TranslateError, library, shader, spirv};
-use lapidary_wgsl::{RECIPES, Recipe};
-use naga::{Module, ShaderStage};
+use lapidary_cookbook::modules;
+use lapidary_translate::{Language, library, shader, spirv};
+use lapidary_wgsl::RECIPES;
+use naga::ShaderStage;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// Whose folder it is.
 const OWNER: Owner = Owner { command: "cook dist", marker: ".lapidary-dist" };
-
-/// Why the folder was not written. Anything that existed at its path is unchanged.
-#[derive(Debug, thiserror::Error)]
-pub enum DistError {
-    /// The folder was not written.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// A module cannot be translated.
-    #[error(transparent)]
-    Translate(#[from] TranslateError),
-    /// A recipe cannot be written.
-    #[error("recipe `{recipe}`: {message}")]
-    Recipe {
-        /// The recipe.
-        recipe: &'static str,
-        /// What is wrong.
-        message: String,
-    },
-}
 
 /// The manifest of the WESL package.
 const WESL: &str = "\
@@ -90,36 +76,6 @@ pub const fn folder_of(language: Language) -> &'static str {
         Language::GlslEs => "glsl-es",
         Language::Hlsl => "hlsl",
         Language::Msl => "msl",
-    }
-}
-
-/// A recipe without marks.
-pub struct Whole {
-    /// The recipe.
-    pub recipe: &'static Recipe,
-    /// Its whole text.
-    pub source: String,
-    /// The same for naga.
-    pub ir: Module,
-    /// The entry points that GLSL ES can say, each with its stage and its text.
-    pub glsl_es: Vec<(String, ShaderStage, String)>,
-}
-
-impl Whole {
-    fn of(recipe: &'static Recipe) -> Result<Self, DistError> {
-        let failed = |message: String| DistError::Recipe { recipe: recipe.name, message };
-        let source = marks::without(recipe, &[]).map_err(|fault| failed(fault.message))?;
-        let (ir, _) = lapidary_specialise::parse(&source, recipe.name).map_err(TranslateError::from)?;
-        let mut glsl_es = Vec::new();
-        for point in &ir.entry_points {
-            match shader(&source, recipe.name, Language::GlslEs, Some(&point.name)) {
-                Ok(text) => glsl_es.push((point.name.clone(), point.stage, text)),
-                // The index says so.
-                Err(TranslateError::Lacks { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
-        }
-        Ok(Self { recipe, source, ir, glsl_es })
     }
 }
 

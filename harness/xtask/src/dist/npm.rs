@@ -1,6 +1,7 @@
 //! An npm package: the modules and recipes as strings, with types, and what runs a frame.
 
-use super::{DistError, Whole};
+use super::error::DistError;
+use super::whole::Whole;
 use lapidary_cookbook::modules;
 use lapidary_specialise::layout::StructLayout;
 use lapidary_translate::{Bound, Language, bindings, library};

@@ -1,6 +1,6 @@
 //! What frames do with recipes, and whether the formulas of sizes hold there.
 
-use super::HostError;
+use super::error::HostError;
 use super::recipe::Description;
 use super::sizes::{self, Quantities, Rule};
 use lapidary_plan::{Outside, Rung};

@@ -1,54 +1,16 @@
 //! What a host has to know to run a recipe: entry points, bindings with their layouts, overrides, and, from frames
 //! that the renderer makes, passes and sizes. `docs/recipes/` holds a page for each recipe.
 
+mod error;
 mod frames;
 mod page;
 mod recipe;
 mod sizes;
 
-use lapidary_cookbook::marks;
-use lapidary_render::RenderError;
-use lapidary_scene::SceneError;
-use lapidary_wgsl::RECIPES;
+pub use error::HostError;
 
-/// Why the pages could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum HostError {
-    /// A recipe is not sound.
-    #[error("recipe `{recipe}`: {message}")]
-    Recipe {
-        /// The recipe.
-        recipe: &'static str,
-        /// What is wrong.
-        message: String,
-    },
-    /// A size or a number of workgroups has no formula, or another one.
-    #[error("recipe `{recipe}`, {what} in `{frame}`: {message}; see harness/xtask/src/host/sizes.rs")]
-    Size {
-        /// The recipe.
-        recipe: String,
-        /// The binding or the entry point.
-        what: String,
-        /// The frame's command.
-        frame: &'static str,
-        /// What is wrong.
-        message: String,
-    },
-    /// A frame's settings are not sound.
-    #[error("frame `{command}`: {message}")]
-    Example {
-        /// The frame's command.
-        command: &'static str,
-        /// What is wrong.
-        message: String,
-    },
-    /// A scene cannot be opened.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A frame cannot be made.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-}
+use lapidary_cookbook::marks;
+use lapidary_wgsl::RECIPES;
 
 /// Returns what each recipe's text says.
 fn described() -> Result<Vec<recipe::Description>, HostError> {

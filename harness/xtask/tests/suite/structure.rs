@@ -113,7 +113,7 @@ fn arrows_between_crates_run_one_way() {
     let known: BTreeSet<&str> = ARROWS.iter().map(|(name, _)| *name).chain(["wgsl"]).collect();
     for (name, allowed) in ARROWS {
         let needed = dependencies(&root().join("harness").join(name).join("Cargo.toml"));
-        assert!(!needed.is_empty(), "{name}");
+        assert!(!needed.is_empty() || name == "flip", "{name}");
         for other in needed.keys().filter(|other| known.contains(other.as_str())) {
             assert!(allowed.contains(&other.as_str()), "{name} needs {other}");
         }

@@ -3,7 +3,7 @@
 
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
-use lapidary_cook::check::{Row, difference};
+use lapidary_cook::check::{Row, differing};
 use lapidary_cookbook as cookbook;
 use lapidary_ladders::{LADDERS, builtins, page};
 use lapidary_plan::Effect;
@@ -54,7 +54,7 @@ fn the_drivers_are_as_recorded() {
     let rows: Vec<Row> = serde_json::from_str(&read("docs/measurements/swiftshader/check.json")).expect("rows");
     let page = read("docs/drivers.md");
     let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");
-    let filled = page::with_table(&filled, page::DIFFERENCES, &difference::table(&rows)).expect("sound marks");
+    let filled = page::with_table(&filled, page::DIFFERENCES, &differing::table(&rows)).expect("sound marks");
     assert!(filled.contains(&builtins), "drivers.md has no place for the table `{}`", page::BUILTINS);
     generated::keep("docs/drivers.md", &filled);
 }

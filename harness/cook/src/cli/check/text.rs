@@ -1,12 +1,20 @@
 //! Output of `cook check` for people.
 
-use super::Checked;
 use console::Color;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::slack::Reassociation;
-use lapidary_cook::check::{On, Row, difference};
+use lapidary_cook::check::{On, Row, differing};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+
+/// Results of a check, with notes.
+#[derive(Default)]
+pub(super) struct Checked {
+    /// The two sides of the comparison.
+    pub(super) about: String,
+    pub(super) rows: Vec<Row>,
+    pub(super) notes: Vec<String>,
+}
 
 /// Whether to use colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +133,7 @@ pub(super) fn report(checked: &Checked, style: Style) -> String {
 /// Lists functions whose results in the browser differ in bits from the adapter's, the most
 /// different first.
 fn differences(rows: &[Row], text: &mut String) {
-    let differing = difference::differing(rows);
+    let differing = differing::differing(rows);
     let _ = writeln!(
         text,
         "\nWhere the bits differ. {} of {} functions give the same bits everywhere.\n\
