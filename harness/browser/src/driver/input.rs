@@ -1,8 +1,11 @@
-//! Keys and clicks on a page.
+//! Keys, clicks and files for a page.
 
+use super::pipe::fault;
 use super::{Page, keys};
 use crate::BrowserError;
 use serde_json::{Value, json};
+use std::fs::File;
+use std::io::Write as _;
 
 /// Finds an element to click, brings it into view and returns where it is. What lies over it would get
 /// the click in its stead.
@@ -66,5 +69,23 @@ impl Page {
             self.call("Input.dispatchMouseEvent", event)?;
         }
         Ok(())
+    }
+
+    /// Returns the protocol's name for the object that an expression of JavaScript is.
+    pub(crate) fn object(&mut self, expression: &str) -> Result<String, BrowserError> {
+        let answer = self.call("Runtime.evaluate", json!({ "expression": expression }))?;
+        let name = answer["result"]["objectId"].as_str();
+        name.map(str::to_owned).ok_or_else(|| fault(format!("{expression} is no object")))
+    }
+
+    /// Chooses a file in a field for one, which is given as [`Page::object`] has it: a file of the browser's
+    /// folder, with these bytes. The next one takes its place.
+    pub(crate) fn choose_file(&mut self, input: &str, parts: &[&[u8]]) -> Result<(), BrowserError> {
+        let path = self.pipe.folder().join("chosen");
+        File::create(&path)
+            .and_then(|mut file| parts.iter().try_for_each(|part| file.write_all(part)))
+            .map_err(fault)?;
+        let path = path.to_str().ok_or_else(|| fault("the folder's name is not in Unicode"))?;
+        self.call("DOM.setFileInputFiles", json!({ "files": [path], "objectId": input })).map(|_| ())
     }
 }

@@ -22,7 +22,7 @@ mod record;
 use crate::BrowserError;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use pipe::{PATIENCE, Pipe, fault};
+use pipe::{CANVAS, PATIENCE, Pipe, fault};
 use record::Record;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -45,7 +45,12 @@ impl Page {
     /// # Errors
     /// Returns an error if the program cannot be started, or does not speak the protocol.
     pub fn start(program: &Path) -> Result<Page, BrowserError> {
-        let mut pipe = Pipe::open(program)?;
+        Page::start_with(program, &CANVAS)
+    }
+
+    /// Starts `program` with an empty page. With those flags alone, WebGPU cannot draw into a canvas.
+    pub(crate) fn start_with(program: &Path, flags: &[&str]) -> Result<Page, BrowserError> {
+        let mut pipe = Pipe::open(program, flags)?;
         let mut outside = |method: &str, params: Value| pipe.call(None, method, &params, |_| {});
         let target = outside("Target.createTarget", json!({ "url": "about:blank" }))?;
         let attached = outside("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }))?;
@@ -79,6 +84,14 @@ impl Page {
             self.listen(PAUSE)?;
         }
         Ok(())
+    }
+
+    /// Opens a page that is given as text. It becomes a file of the browser's folder: Chromium takes files
+    /// for a secure context, and only there has a page WebGPU.
+    pub(crate) fn open_text(&mut self, html: &str) -> Result<(), BrowserError> {
+        let path = self.pipe.folder().join("page.html");
+        std::fs::write(&path, html).map_err(fault)?;
+        self.open(&address(&path))
     }
 
     /// Returns the value of an expression of JavaScript as JSON. A promise is awaited.
@@ -226,10 +239,20 @@ impl Page {
     }
 }
 
+/// Returns the address of a file: `%`, `?`, `#` and what is not ASCII have another meaning there, or none.
+fn address(path: &Path) -> String {
+    let escaped = |&byte: &u8| match byte {
+        b'/' | b'.' | b'-' | b'_' | b'~' => char::from(byte).to_string(),
+        _ if byte.is_ascii_alphanumeric() => char::from(byte).to_string(),
+        _ => format!("%{byte:02X}"),
+    };
+    format!("file://{}", path.as_os_str().as_encoded_bytes().iter().map(escaped).collect::<String>())
+}
+
 /// What JavaScript takes for true in a condition.
 fn is_truthy(value: &Value) -> bool {
     !(matches!(value, Value::Null | Value::Bool(false)) || *value == "" || value.as_f64() == Some(0.0))
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
