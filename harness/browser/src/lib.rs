@@ -1,8 +1,8 @@
 //! A browser's WebGPU from Rust: a second WGSL compiler (Tint), and drivers other than one's own; and its
 //! WebGL 2, for what is translated to GLSL ES.
 //!
-//! Chromium runs headless on a page served by this process. The page asks for jobs over a local
-//! socket, does them and returns the answers: it contains no shader, and this crate no technique.
+//! Chromium runs headless on a page of this crate, whose functions this process calls for each job over a
+//! pipe: the page contains no shader, and this crate no technique.
 //! [`Page`] shows a page of one's own instead, and reads, presses and clicks it as its reader does.
 //!
 //! ```no_run
@@ -18,15 +18,17 @@
 //! ```
 
 mod adapter;
-mod connection;
 mod driver;
 mod error;
+mod jobs;
 
 pub use adapter::Adapter;
-use connection::Connection;
 pub use driver::Page;
 pub use error::BrowserError;
+use jobs::Worker;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -90,7 +92,6 @@ enum Job<'a> {
     Compile { texts: &'a [&'a str] },
     Compute { key: usize, code: &'a str, entry: &'a str, buffers: Vec<Size>, workgroups: [u32; 3] },
     Transform { key: usize, code: &'a str, varyings: &'a [String], vertices: u32, size: usize },
-    End,
 }
 
 #[derive(Serialize)]
@@ -111,7 +112,7 @@ pub struct Browser {
 
 #[derive(Debug)]
 struct State {
-    connection: Connection,
+    worker: Worker,
     /// Job key of each pair of text and entry point.
     keys: BTreeMap<(String, String), usize>,
 }
@@ -132,21 +133,10 @@ impl Browser {
         struct Greeting {
             adapter: String,
         }
-        let mut connection = Connection::open(program, adapter)?;
-        let (head, _) = match connection.greeting() {
-            Ok(greeting) => greeting,
-            Err(error) => {
-                connection.end(&Job::End);
-                return Err(error);
-            }
-        };
-        let Greeting { adapter: name } = parsed(&head)?;
+        let (worker, greeting) = Worker::open(program, adapter)?;
+        let Greeting { adapter: name } = parsed(greeting)?;
         let name = if name.is_empty() { "an adapter without a name".to_owned() } else { name };
-        Ok(Browser {
-            adapter: name,
-            choice: adapter,
-            state: Mutex::new(Some(State { connection, keys: BTreeMap::new() })),
-        })
+        Ok(Browser { adapter: name, choice: adapter, state: Mutex::new(Some(State { worker, keys: BTreeMap::new() })) })
     }
 
     /// Returns the adapter's name, as reported by the browser.
@@ -170,8 +160,8 @@ impl Browser {
         }
         let mut guard = self.state();
         let state = opened(&mut guard)?;
-        let (head, _) = state.connection.ask(&Job::Compile { texts }, &[])?;
-        let Answer { messages } = parsed(&head)?;
+        let (head, _) = state.worker.ask(&Job::Compile { texts }, &[])?;
+        let Answer { messages } = parsed(head)?;
         Ok(messages)
     }
 
@@ -191,7 +181,7 @@ impl Browser {
             .collect();
         let parts: Vec<&[u8]> = buffers.iter().filter_map(|buffer| buffer.filled).collect();
         let job = Job::Compute { key, code, entry, buffers: sizes, workgroups };
-        let (_, bytes) = state.connection.ask(&job, &parts)?;
+        let (_, bytes) = state.worker.ask(&job, &parts)?;
         let mut rest = bytes.as_slice();
         let read = buffers.iter().filter(|buffer| buffer.read);
         read.map(|buffer| {
@@ -216,7 +206,7 @@ impl Browser {
         let key = *state.keys.entry((code.to_owned(), varyings.join(" "))).or_insert(next);
         let size = 16 * varyings.len() * vertices as usize;
         let job = Job::Transform { key, code, varyings, vertices, size };
-        let (_, bytes) = state.connection.ask(&job, &[filled])?;
+        let (_, bytes) = state.worker.ask(&job, &[filled])?;
         match bytes.len() == size {
             true => Ok(bytes),
             false => Err(BrowserError::Connection("its answer is too short".to_owned())),
@@ -225,9 +215,7 @@ impl Browser {
 
     /// Closes the browser. All later calls fail.
     pub fn close(&self) {
-        if let Some(mut state) = self.state().take() {
-            state.connection.end(&Job::End);
-        }
+        drop(self.state().take());
     }
 
     fn state(&self) -> MutexGuard<'_, Option<State>> {
@@ -245,7 +233,10 @@ fn opened<'a>(guard: &'a mut MutexGuard<'_, Option<State>>) -> Result<&'a mut St
     guard.as_mut().ok_or_else(|| BrowserError::Connection("the browser is closed".to_owned()))
 }
 
-fn parsed<'a, T: Deserialize<'a>>(head: &'a [u8]) -> Result<T, BrowserError> {
-    serde_json::from_slice(head)
+fn parsed<T: DeserializeOwned>(head: Value) -> Result<T, BrowserError> {
+    serde_json::from_value(head)
         .map_err(|error| BrowserError::Connection(format!("its answer is no such one: {error}")))
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,6 +14,7 @@
 //! # Ok::<(), lapidary_browser::BrowserError>(())
 //! ```
 
+mod input;
 mod keys;
 mod pipe;
 mod record;
@@ -21,7 +22,7 @@ mod record;
 use crate::BrowserError;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use pipe::{PATIENCE, Pipe, fault};
+use pipe::{CANVAS, PATIENCE, Pipe, fault};
 use record::Record;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -29,22 +30,6 @@ use std::time::{Duration, Instant};
 
 /// Time between two questions whether something has come about.
 const PAUSE: Duration = Duration::from_millis(50);
-
-/// Finds an element to click, brings it into view and returns where it is. What lies over it would get
-/// the click in its stead.
-const PLACE: &str = "((selector) => {
-    const element = document.querySelector(selector);
-    if (!element) throw new Error(`nothing is ${selector}`);
-    element.scrollIntoView({ block: 'center', inline: 'center', behavior: 'instant' });
-    const box = element.getBoundingClientRect();
-    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
-    const top = document.elementFromPoint(x, y);
-    if (!box.width || !box.height) throw new Error(`${selector} has no area`);
-    if (!top || !(element.contains(top) || top.contains(element) || element.labels?.[0]?.contains(top))) {
-        throw new Error(`${selector} is covered by ${top?.outerHTML.slice(0, 200) ?? 'nothing: it is out of view'}`);
-    }
-    return [x, y];
-})";
 
 /// A browser with one page, which it may open at one address after another.
 #[derive(Debug)]
@@ -60,7 +45,12 @@ impl Page {
     /// # Errors
     /// Returns an error if the program cannot be started, or does not speak the protocol.
     pub fn start(program: &Path) -> Result<Page, BrowserError> {
-        let mut pipe = Pipe::open(program)?;
+        Page::start_with(program, &CANVAS)
+    }
+
+    /// Starts `program` with an empty page. With those flags alone, WebGPU cannot draw into a canvas.
+    pub(crate) fn start_with(program: &Path, flags: &[&str]) -> Result<Page, BrowserError> {
+        let mut pipe = Pipe::open(program, flags)?;
         let mut outside = |method: &str, params: Value| pipe.call(None, method, &params, |_| {});
         let target = outside("Target.createTarget", json!({ "url": "about:blank" }))?;
         let attached = outside("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }))?;
@@ -94,6 +84,14 @@ impl Page {
             self.listen(PAUSE)?;
         }
         Ok(())
+    }
+
+    /// Opens a page that is given as text. It becomes a file of the browser's folder: Chromium takes files
+    /// for a secure context, and only there has a page WebGPU.
+    pub(crate) fn open_text(&mut self, html: &str) -> Result<(), BrowserError> {
+        let path = self.pipe.folder().join("page.html");
+        std::fs::write(&path, html).map_err(fault)?;
+        self.open(&address(&path))
     }
 
     /// Returns the value of an expression of JavaScript as JSON. A promise is awaited.
@@ -143,53 +141,6 @@ impl Page {
             }
             self.listen(PAUSE)?;
         }
-    }
-
-    /// Presses a key: a name as in `KeyboardEvent.key` or a character, with `Shift+`, `Control+`,
-    /// `Alt+` or `Meta+` before it.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such key, or the browser is gone.
-    pub fn press(&mut self, key: &str) -> Result<(), BrowserError> {
-        for event in keys::events(key)? {
-            self.call("Input.dispatchKeyEvent", event)?;
-        }
-        Ok(())
-    }
-
-    /// Presses the keys of a text, one after another.
-    ///
-    /// # Errors
-    /// Returns an error if the browser is gone.
-    pub fn type_text(&mut self, text: &str) -> Result<(), BrowserError> {
-        text.chars().try_for_each(|letter| self.press(letter.encode_utf8(&mut [0; 4])))
-    }
-
-    /// Clicks in the middle of the first element of that selector.
-    ///
-    /// # Errors
-    /// Returns an error if there is none, or something lies over it.
-    pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
-        let place = self.evaluate(&format!("{PLACE}({})", Value::from(selector)))?;
-        for kind in ["mouseMoved", "mousePressed", "mouseReleased"] {
-            let count = u8::from(kind != "mouseMoved");
-            let button = if kind == "mouseMoved" { "none" } else { "left" };
-            let event = json!({ "type": kind, "x": place[0], "y": place[1], "button": button, "clickCount": count });
-            self.call("Input.dispatchMouseEvent", event)?;
-        }
-        Ok(())
-    }
-
-    /// Drags with the left button from one place to another, in CSS pixels of the window.
-    ///
-    /// # Errors
-    /// Returns an error if the browser is gone.
-    pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
-        for (kind, [x, y]) in [("mousePressed", from), ("mouseMoved", to), ("mouseReleased", to)] {
-            let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
-            self.call("Input.dispatchMouseEvent", event)?;
-        }
-        Ok(())
     }
 
     /// Returns what the window shows at that size as a PNG.
@@ -288,10 +239,20 @@ impl Page {
     }
 }
 
+/// Returns the address of a file: `%`, `?`, `#` and what is not ASCII have another meaning there, or none.
+fn address(path: &Path) -> String {
+    let escaped = |&byte: &u8| match byte {
+        b'/' | b'.' | b'-' | b'_' | b'~' => char::from(byte).to_string(),
+        _ if byte.is_ascii_alphanumeric() => char::from(byte).to_string(),
+        _ => format!("%{byte:02X}"),
+    };
+    format!("file://{}", path.as_os_str().as_encoded_bytes().iter().map(escaped).collect::<String>())
+}
+
 /// What JavaScript takes for true in a condition.
 fn is_truthy(value: &Value) -> bool {
     !(matches!(value, Value::Null | Value::Bool(false)) || *value == "" || value.as_f64() == Some(0.0))
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -16,9 +16,9 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 /// Maximum time for Chromium to exit when it is asked to.
 const FAREWELL: Duration = Duration::from_secs(10);
 
-/// Flags by which WebGPU draws into a canvas on SwiftShader, as the examples for engines have them:
-/// `docs/engines/browser.js`.
-const FLAGS: [&str; 17] = [
+/// Flags for every page. The process shows only pages of this project; and as root, which most containers run
+/// as, Chromium has no sandbox.
+const FLAGS: [&str; 10] = [
     "--headless=new",
     "--no-sandbox",
     "--no-first-run",
@@ -27,17 +27,26 @@ const FLAGS: [&str; 17] = [
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
-    "--disable-gpu-watchdog",
     "--hide-scrollbars",
+    "--enable-unsafe-webgpu",
+];
+
+/// Further flags by which WebGPU draws into a canvas, on SwiftShader, as the examples for engines have them:
+/// `docs/engines/browser.js`. Chromium takes a second longer to start with them.
+pub(super) const CANVAS: [&str; 7] = [
+    // SwiftShader is slow, and would be taken for hung.
+    "--disable-gpu-watchdog",
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
-    "--enable-unsafe-webgpu",
     "--use-webgpu-adapter=swiftshader",
     // A canvas of WebGPU's needs Chromium's own surfaces on Vulkan too: on GL its GPU process ends.
     "--use-vulkan=swiftshader",
     "--enable-features=Vulkan",
 ];
+
+/// Name of the file, in the folder, with what Chromium writes to stderr.
+const LOG: &str = "stderr";
 
 /// Chromium speaks on the descriptors 3 and 4, which only a shell can set without unsafe code.
 const SHELL: &str = r#"exec "$@" 3<&0 4>&1 0</dev/null 1>/dev/null"#;
@@ -68,8 +77,8 @@ pub(super) struct Pipe {
     input: Option<ChildStdin>,
     messages: Receiver<Result<Message, String>>,
     calls: u64,
-    log: PathBuf,
-    _folder: tempfile::TempDir,
+    program: PathBuf,
+    folder: tempfile::TempDir,
 }
 
 pub(super) fn fault(error: impl std::fmt::Display) -> BrowserError {
@@ -77,16 +86,16 @@ pub(super) fn fault(error: impl std::fmt::Display) -> BrowserError {
 }
 
 impl Pipe {
-    /// Starts `program`, on an empty folder of its own.
-    pub(super) fn open(program: &Path) -> Result<Pipe, BrowserError> {
+    /// Starts `program` with those flags too, on an empty folder of its own.
+    pub(super) fn open(program: &Path, flags: &[&str]) -> Result<Pipe, BrowserError> {
         let folder = tempfile::Builder::new().prefix("lapidary-").tempdir().map_err(fault)?;
-        let log = folder.path().join("stderr");
         let mut command = Command::new("sh");
-        command.args(["-c", SHELL, "sh"]).arg(program).args(FLAGS);
+        command.args(["-c", SHELL, "sh"]).arg(program).args(FLAGS).args(flags);
         command.arg("--remote-debugging-pipe").arg(format!("--user-data-dir={}", folder.path().display()));
         // It leaves folders of sockets in the system's folder for temporary files.
         command.env("TMPDIR", folder.path());
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(File::create(&log).map_err(fault)?);
+        let log = File::create(folder.path().join(LOG)).map_err(fault)?;
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(log);
         let mut child = command.spawn().map_err(|error| fault(format!("sh cannot be started: {error}")))?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
         let output = output.ok_or_else(|| fault("no pipe"))?;
@@ -100,7 +109,12 @@ impl Pipe {
                 }
             }
         });
-        Ok(Pipe { child, input, messages, calls: 0, log, _folder: folder })
+        Ok(Pipe { child, input, messages, calls: 0, program: program.to_owned(), folder })
+    }
+
+    /// Returns the folder of this Chromium, which is removed with it.
+    pub(super) fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     /// Calls a method, and returns its result; events that come meanwhile are handed to `seen`.
@@ -120,7 +134,7 @@ impl Pipe {
             Some(input) => input.write_all(format!("{call}\0").as_bytes()).and_then(|()| input.flush()),
             None => return Err(fault("the browser is closed")),
         };
-        sent.map_err(|error| self.gone(&format!("{method}: {error}")))?;
+        sent.map_err(|error| self.ended(&format!("{method}: {error}")))?;
         let until = Instant::now() + PATIENCE;
         loop {
             let Some(message) = self.next(until.saturating_duration_since(Instant::now()))? else {
@@ -146,13 +160,37 @@ impl Pipe {
             Ok(Ok(message)) => Ok(Some(message)),
             Ok(Err(error)) => Err(self.gone(&error)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(self.gone("the browser ended")),
+            Err(RecvTimeoutError::Disconnected) => Err(self.ended("it closed its pipe")),
+        }
+    }
+
+    /// The error for a browser that has exited, or at least left its pipe with that problem.
+    fn ended(&mut self, problem: &str) -> BrowserError {
+        match self.exit_within(FAREWELL) {
+            // So says the shell.
+            Some(status) if matches!(status.code(), Some(126 | 127)) => {
+                self.gone(&format!("{} cannot be started", self.program.display()))
+            }
+            Some(status) => self.gone(&format!("it ended without an answer, {status}")),
+            None => self.gone(problem),
         }
     }
 
     /// The error for a browser that is gone, with the last that it said.
-    fn gone(&mut self, problem: &str) -> BrowserError {
-        fault(format!("{problem}\n{}", crate::connection::last_lines(&self.log)))
+    fn gone(&self, problem: &str) -> BrowserError {
+        fault(format!("{problem}\n{}", last_lines(&self.folder().join(LOG))))
+    }
+
+    /// Waits for Chromium's exit; `None` if it stays for longer than that.
+    fn exit_within(&mut self, within: Duration) -> Option<ExitStatus> {
+        let until = Instant::now() + within;
+        loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => return Some(status),
+                _ if Instant::now() > until => return None,
+                _ => std::thread::sleep(Duration::from_millis(10)),
+            }
+        }
     }
 
     /// Asks Chromium to exit, and waits for it; kills it if it stays.
@@ -160,16 +198,11 @@ impl Pipe {
         if let Some(mut input) = self.input.take() {
             let _ = input.write_all(b"{\"id\":0,\"method\":\"Browser.close\"}\0");
         }
-        let started = Instant::now();
-        while started.elapsed() < FAREWELL {
-            if let Ok(Some(_)) = self.child.try_wait() {
-                return;
-            }
-            std::thread::sleep(Duration::from_millis(10));
+        if self.exit_within(FAREWELL).is_none() {
+            // If it has exited meanwhile, there is nothing left to kill.
+            let _ = self.child.kill();
+            let _ = self.child.wait();
         }
-        // If it has exited, there is nothing left to kill.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 
@@ -177,6 +210,14 @@ impl Drop for Pipe {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// Returns the last lines that Chromium wrote to stderr.
+fn last_lines(log: &Path) -> String {
+    let text = std::fs::read(log).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let lines: Vec<&str> = text.lines().collect();
+    lines[lines.len().saturating_sub(8)..].join("\n")
 }
 
 /// Reads one message; `None` at the end of the pipe.
@@ -206,8 +247,8 @@ mod tests {
 
     #[test]
     fn a_program_that_is_no_browser_is_named_with_what_it_says() {
-        let mut pipe = Pipe::open(Path::new("/nowhere/chromium")).expect("the shell starts");
+        let mut pipe = Pipe::open(Path::new("/nowhere/chromium"), &[]).expect("the shell starts");
         let error = pipe.call(None, "Browser.getVersion", &json!({}), |_| {}).expect_err("no browser").to_string();
-        assert!(error.contains("/nowhere/chromium"), "{error}");
+        assert!(error.contains("/nowhere/chromium cannot be started"), "{error}");
     }
 }

@@ -1,9 +1,10 @@
 //! Each on a small page of its own. Without Chromium they say so and pass; with
 //! `LAPIDARY_CHROMIUM=required`, as in `.ci/run`, they fail.
 
-use super::Page;
+use super::{Page, address};
 use crate::Browser;
 use std::io::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const HTML: &str = r#"<!DOCTYPE html>
@@ -17,20 +18,32 @@ const HTML: &str = r#"<!DOCTYPE html>
 <script>window.keys = []; addEventListener('keydown', (event) => keys.push(event.key));</script></body></html>
 "#;
 
-/// Starts a browser at the page; nothing without Chromium.
-fn opened() -> Option<(Page, tempfile::TempDir)> {
+/// Returns the path of Chromium; nothing without one, if it is not required.
+pub(crate) fn chromium() -> Option<PathBuf> {
     let required = std::env::var_os("LAPIDARY_CHROMIUM").is_some_and(|value| value == "required");
-    let Some(program) = Browser::find() else {
+    let program = Browser::find();
+    if program.is_none() {
         assert!(!required, "no Chromium on the PATH");
         let _ = writeln!(std::io::stderr(), "not checked: no Chromium on the PATH");
-        return None;
-    };
+    }
+    program
+}
+
+/// Starts a browser at the page; nothing without Chromium.
+fn opened() -> Option<(Page, tempfile::TempDir)> {
+    let program = chromium()?;
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("page.html");
     std::fs::write(&path, HTML).expect("written");
     let mut page = Page::start(&program).expect("a browser");
     page.open(&format!("file://{}", path.display())).expect("the page");
     Some((page, folder))
+}
+
+#[test]
+fn addresses_are_escaped() {
+    assert_eq!(address(Path::new("/tmp/.a-1/page.html")), "file:///tmp/.a-1/page.html");
+    assert_eq!(address(Path::new("/a b/50%/#é?")), "file:///a%20b/50%25/%23%C3%A9%3F");
 }
 
 #[test]
