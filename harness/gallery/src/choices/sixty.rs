@@ -49,12 +49,9 @@ pub fn holds(kind: &Kind, rung: &str) -> Option<String> {
     Some(if OnGpu::of(kind).fills { word.to_owned() } else { format!("{word}, {} ms", shown(ms)) })
 }
 
-/// Returns the geometry of a rung that searches a stone by map or by hierarchy; `None` for the others.
-fn searched(rung: &str) -> Option<Geometry> {
-    match rung.parse() {
-        Ok(Rung::Inside { geometry: geometry @ (Geometry::Walk | Geometry::Bvh), .. }) => Some(geometry),
-        _ => None,
-    }
+/// Whether a rung searches a stone by map or by hierarchy.
+fn is_searched(rung: &str) -> bool {
+    matches!(rung.parse(), Ok(Rung::Inside { geometry: Geometry::Walk | Geometry::Bvh, .. }))
 }
 
 /// Returns the rung by map or by hierarchy that errs least among those that hold 60 frames a second where a stone fills
@@ -65,7 +62,7 @@ pub fn nearest(kind: &Kind) -> Option<Rung> {
     if !on_gpu.fills || !holds(&kind.technique.rung(Quality::Fast).to_string()) {
         return None;
     }
-    let holding = ladder.steps.iter().filter(|step| searched(&step.rung).is_some() && holds(&step.rung));
+    let holding = ladder.steps.iter().filter(|step| is_searched(&step.rung) && holds(&step.rung));
     holding.min_by(|a, b| a.error.total_cmp(&b.error))?.rung.parse().ok()
 }
 
