@@ -9,7 +9,7 @@ const BEGIN: &str = "<!-- generated: ";
 /// The mark after a generated table.
 const END: &str = "<!-- end -->";
 
-/// Name of the README's table of modules, which belongs to no report.
+/// Name of the table of modules, docs/modules.md, which belongs to no report.
 pub const MODULES: &str = "modules";
 
 /// Name of the table of rungs by quality, of `docs/choosing.md`.
