@@ -326,7 +326,7 @@ fn show(ladder: &Ladder, shown: &Shown, measure: impl FnOnce() -> Result<Report,
     for (path, page) in &mut pages {
         *page = page::fill(page, ladder, &report).map_err(|error| at(path, &error))?;
     }
-    let (text, json) = (report.text(ladder), report.json()?);
+    let (text, json) = (ladder.text(&report), report.json()?);
     if let Some(out) = &shown.out {
         let plots = (ladder.plots)(&report).into_iter().filter(|plot| !plot.is_empty());
         let plots = plots.map(|plot| Ok((plot.file.to_owned(), plot.svg()?))).collect::<Result<Vec<_>, CostError>>()?;

@@ -1,8 +1,11 @@
 //! Translucent bodies in motion: what a frame takes if it is computed from nothing, and if it keeps what the
 //! motion does not change and begins with the fluence of the frame before.
 
-use super::table::{Goal, Table, figure, scientific};
-use super::{CostError, Ladder, Options, Progress, Report, Row};
+use crate::error::CostError;
+use crate::ladder::Ladder;
+use crate::options::{Options, Progress};
+use crate::report::{Report, Row};
+use crate::table::{Goal, Table, figure, scientific};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render::{DiffusionOptions, FrameTimer, RenderError, Settings, Stage};

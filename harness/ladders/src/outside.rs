@@ -1,10 +1,13 @@
 //! What light that leaves a stone meets: the error that each way leaves in stones among other bodies,
 //! and its time.
 
-use super::gem::Errors;
-use super::table::{Table, figure, mean};
-use super::timing::{self, Timed};
-use super::{CostError, Ladder, Options, Progress, Report, Row};
+use crate::error::CostError;
+use crate::gem::Errors;
+use crate::ladder::Ladder;
+use crate::options::{Options, Progress};
+use crate::report::{Report, Row};
+use crate::table::{Table, figure, mean};
+use crate::timing::{self, Timed};
 use glam::Vec3;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Outside, Rung};

@@ -1,7 +1,9 @@
 //! Inserts a report's tables between marks in the pages of `docs/`, so that no figure is copied by
 //! hand.
 
-use super::{LADDERS, Ladder, Report};
+use crate::ladder::Ladder;
+use crate::list::LADDERS;
+use crate::report::Report;
 use std::fmt::Write as _;
 
 /// The mark before a generated table, followed by the table's name.

@@ -1,7 +1,9 @@
 //! A head of skin that is the same everywhere, drawn in the ways that one would use, beside random walks.
 
 use super::scenes::{self, SIDE, add_timed};
-use super::{CostError, Options, Report, Row};
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use crate::table::{Table, figure};
 use crate::timing::Timed;
 use lapidary_gpu::Gpu;

@@ -2,7 +2,9 @@
 //! random walks, by how the light falls.
 
 use super::scenes::{self, SCENES, SIDE, add_timed};
-use super::{CostError, Options, Report, Row};
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use crate::table::{Goal, Table, figure};
 use crate::timing::Timed;
 use glam::Vec3;

@@ -1,7 +1,9 @@
 //! Whole pictures compared with the committed random walks, with and without cast shadows, and the
 //! times of the same pictures.
 
-use super::{CostError, Options, Report, Row};
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use crate::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};

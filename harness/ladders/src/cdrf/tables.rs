@@ -1,7 +1,7 @@
 //! The reflectance ladder's tables and its plot.
 
+use super::rungs::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
 use super::scenes::{self, SCENES, SIDE};
-use super::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
 use super::{head, law};
 use crate::plot::{self, Axis, COLORS, Corner, Dot, Marker, Plot, Series};
 use crate::quality;

@@ -1,9 +1,9 @@
 //! Errors of a rung's function against random walks through spheres: the residual of the
 //! convolution itself, and what a rung's errors add to it.
 
-use crate::report::distinct;
+use crate::error::CostError;
+use crate::report::{Report, distinct};
 use crate::sphere::{self, Fit, ScaleKind};
-use crate::{CostError, Report};
 use lapidary_cookbook::repository;
 use lapidary_reference::random_walk::Profile;
 use rayon::prelude::*;

@@ -1,7 +1,12 @@
 //! Time of one frame by the number of a stone's facets.
 
-use super::super::timing::{self, Timed};
-use super::{CostError, Options, Progress, Report, Row, views};
+use super::options::Options;
+use super::seen::SAMPLES;
+use super::views;
+use crate::error::CostError;
+use crate::options::Progress;
+use crate::report::{Report, Row};
+use crate::timing::{self, Timed};
 use glam::DVec3;
 use lapidary_gpu::Gpu;
 use lapidary_render::Settings;
@@ -39,7 +44,7 @@ pub(super) fn measure(
     let timed: Vec<Timed<'_>> = frames()
         .map(|((_, scene), (_, rung))| Timed {
             scales: true,
-            ..Timed::new(scene, Settings { rung: *rung, samples: super::SAMPLES, ..Settings::of_size(width, height) })
+            ..Timed::new(scene, Settings { rung: *rung, samples: SAMPLES, ..Settings::of_size(width, height) })
         })
         .collect();
     let mut step = |done, total| progress("timing more and more facets", done, total);

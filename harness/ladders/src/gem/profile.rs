@@ -1,6 +1,7 @@
 //! Where a frame's time goes: frames of one stone, with one part after another cut from the recipe.
 
-use super::{CostError, views};
+use super::views;
+use crate::error::CostError;
 use crate::table::figure;
 use crate::timing::{self, Timed};
 use lapidary_gpu::Gpu;

@@ -1,8 +1,10 @@
 //! Accuracy of the proxy at small sizes, where it has been considered good enough: compared with
 //! exact facets and a black stone, by size, cut and environment.
 
+use super::error::Errors;
 use super::views::{self, View};
-use super::{CostError, Errors, Report, Row};
+use crate::error::CostError;
+use crate::report::{Report, Row};
 use glam::{UVec2, Vec3};
 use lapidary_environment::direction_from_uv;
 use lapidary_gpu::Gpu;

@@ -1,7 +1,8 @@
 //! Total internal reflection at the first hit inside the stone: exact and with the proxy, by how
 //! normals were averaged and how the table was triangulated.
 
-use super::{CostError, Report, Row};
+use crate::error::CostError;
+use crate::report::{Report, Row};
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_render::Settings;
 use lapidary_render::pixel::{Shading, Stone, Viewer};

@@ -4,12 +4,12 @@ use super::dispersion::Colours;
 use super::growth::{self, GROWTH};
 use super::proxy_sizes::{self as sizes};
 use super::reflection::PARTS;
+use super::rungs::{FILLED, MEASURES, RUNGS};
 use super::seen::{MEAN, STEADINESS, STEADY};
 use super::views::{self, VIEWS};
-use super::{FILLED, MEASURES, RUNGS};
 use crate::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
 use crate::quality;
-use crate::report::{Report, TIME, all_pairs, distinct, dominated};
+use crate::report::{Report, Row, TIME, all_pairs, distinct, dominated};
 use crate::table::{Goal, Table, beyond, figure, marked, mean, sum};
 use lapidary_plan::ladder::CONCAVE;
 use lapidary_plan::{Geometry, Rung, Spectrum, Technique};
@@ -169,7 +169,7 @@ fn concave(gem: &Gem<'_>) -> Table {
 fn steadiness(gem: &Gem<'_>) -> Table {
     let report = gem.report;
     let [flip, apart, changes] = STEADINESS;
-    let with = |row: &&crate::Row| row.rung == STEADY && row.view == MEAN;
+    let with = |row: &&Row| row.rung == STEADY && row.view == MEAN;
     let ways: Vec<&str> = report.rows.iter().filter(with).filter_map(|row| row.measure.strip_prefix(changes)).collect();
     let value =
         |view: &str, measure: &str, way: &str| figure(report.value(STEADY, view, &format!("{measure}{way}")), 3);
@@ -439,7 +439,7 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Row, Timing};
+    use crate::Timing;
 
     /// Returns a report of one view, in which each rung has a time, a FLIP and an RMSE.
     fn report(rungs: &[(&str, Option<f64>, f64, f64)]) -> Report {
@@ -465,7 +465,7 @@ mod tests {
             ("untimed", None, 0.9, 0.9),
         ];
         assert_eq!(Gem::new(&report(&rungs)).dominated(), ["slow", "worse"]);
-        let text = report(&rungs).text(&super::super::LADDER);
+        let text = super::super::LADDER.text(&report(&rungs));
         assert_eq!(text.lines().filter(|line| line.ends_with("dominated")).count(), 2, "{text}");
     }
 

@@ -245,7 +245,7 @@ mod tests {
     fn the_spheres_of_a_report_survive_its_json() {
         let report = report();
         let again = Report::from_json(LADDER.name, &report.json().expect("JSON")).expect("a report");
-        assert_eq!(again.text(&LADDER), report.text(&LADDER));
+        assert_eq!(LADDER.text(&again), LADDER.text(&report));
         let found = profiles(&again);
         assert_eq!(found.iter().map(|profile| profile.radius).collect::<Vec<_>>(), SMALL);
         for (found, radius) in found.iter().zip(SMALL) {

@@ -196,7 +196,7 @@ fn the_pages_show_the_record() {
             assert!(page::fill(&text, ladder, &report).expect("filled") == text, "{page} is not the record's: {again}");
         }
         let text = docs(&format!("measurements/{folder}/{name}.txt"));
-        assert!(text == report.text(ladder), "{name}.txt is not the record's: {again}");
+        assert!(text == ladder.text(&report), "{name}.txt is not the record's: {again}");
         for plot in (ladder.plots)(&report) {
             let drawn = docs(&format!("measurements/{folder}/{}", plot.file));
             assert!(drawn == plot.svg().expect("drawn"), "{} is not the record's: {again}", plot.file);
@@ -207,7 +207,7 @@ fn the_pages_show_the_record() {
         let folder = "docs/measurements/nvidia_h200";
         let text = docs(&format!("measurements/nvidia_h200/{name}.txt"));
         let again = format!("./cook cost {name} --from {folder}/{name}.json --out {folder}");
-        assert!(text == record(name, "nvidia_h200").text(ladder(name)), "{name}.txt is not the record's: {again}");
+        assert!(text == ladder(name).text(&record(name, "nvidia_h200")), "{name}.txt is not the record's: {again}");
     }
 }
 
@@ -354,7 +354,7 @@ fn spheres_are_walked_written_and_shown_again() {
     }
     let filled = read("page.md");
     assert!(filled.contains("| 0.99 |") && filled.contains("<!-- generated: ladder -->mine<!-- end -->"), "{filled}");
-    assert_eq!(text, report.text(ladder("sphere")));
+    assert_eq!(text, ladder("sphere").text(&report));
     // The same seed, the same walks.
     let other = succeeds(folder.path(), &["cost", "sphere", "--walks", "500", "--seed", "3"]).stdout;
     assert_eq!(other, again);
