@@ -1,10 +1,10 @@
 //! The diagrams in `docs/diagrams` are those that the program draws, each stands on its module's page, and what is
 //! drawn obeys the laws that it shows, measured on the sheet.
 
-use crate::generated;
+use lapidary_cookbook::repository;
 use lapidary_studies::diagram::scene::{Item, Point, Scene, Shape};
 use lapidary_studies::diagram::{Diagram, all};
-use lapidary_cookbook::repository;
+use lapidary_testing::generated;
 
 #[test]
 fn the_diagrams_are_as_drawn() {

@@ -2,7 +2,7 @@
 
 use super::error::{self, Samples};
 use super::rungs::{CIRCULAR, NAME, SPHERICAL, TABLE};
-use super::{frames, head, law, scenes, walks};
+use super::{as_drawn, frames, scenes, sphere_fit, spheres};
 use crate::error::CostError;
 use crate::options::{Options, Progress};
 use crate::report::{Report, Row};
@@ -18,7 +18,7 @@ use lapidary_scene::solver::Reflectance;
 ///
 /// Returns an error if the record of spheres is missing or if the device fails.
 pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) -> Result<Report, CostError> {
-    let spheres = walks::record(&walks::record_file())?;
+    let walked = spheres::record(&spheres::record_file())?;
     let scenes = frames::Scenes::new()?;
     let [width, height] = options.frame;
     let settings = [
@@ -26,7 +26,7 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
         ("height", height.into()),
         ("rounds", options.rounds.into()),
         ("vertices", scenes.vertices() as u64),
-        ("spheres", spheres.len() as u64),
+        ("spheres", walked.len() as u64),
         ("side", scenes::SIDE.into()),
     ];
     let mut report = Report::new(NAME, gpu.describe(), &settings);
@@ -41,7 +41,7 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
         let definition = if reflectance == Reflectance::Spherical { &spherical } else { &convolution };
         errors.push(function.map(|function| {
             let distance = definition.distance(&function);
-            let [free, fixed] = walks::residuals(&spheres, &function);
+            let [free, fixed] = sphere_fit::residuals(&walked, &function);
             [distance.largest, distance.rms, free, fixed]
         }));
         let bytes = scenes.mesh_bytes(reflectance);
@@ -54,7 +54,7 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
     }
     report.rows.extend(convolution.distance(lapidary_cdrf::spherical).rows(SPHERICAL, CIRCULAR));
     scenes::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks", done, total))?;
-    law::measure(gpu, options, &mut report, &mut |done, total| progress("beside walks, by law", done, total))?;
-    head::measure(gpu, options, &mut report, &mut |done, total| progress("a head beside walks", done, total))?;
+    let mut step = |done, total| progress("beside walks, as drawn", done, total);
+    as_drawn::measure(gpu, options.rounds, &mut report, &mut step)?;
     Ok(report)
 }

@@ -2,16 +2,16 @@
 //! against random walks through spheres, and its time compared with Lambert's law and a blur in
 //! texture space.
 
+mod as_drawn;
 pub mod error;
 mod frames;
-mod head;
-mod law;
 mod measure;
 mod rungs;
-mod scenes;
+pub mod scenes;
 mod shader;
+pub mod sphere_fit;
+pub mod spheres;
 mod tables;
-mod walks;
 
 pub use measure::run;
 pub use rungs::{CIRCULAR, MEASURES, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS, options};

@@ -1,11 +1,11 @@
 //! Measures the gem ladder: errors and times of its rungs in all views, and of frames that a stone fills.
 
+use super::choices;
 use super::dispersion::{self, Colours};
 use super::options::Options;
 use super::rungs::{FILLED, NAME};
 use super::seen::{self, SAMPLES, Watched};
 use super::views::{self, View};
-use super::{choices, growth, proxy_sizes, reflection};
 use crate::error::CostError;
 use crate::options::Progress;
 use crate::report::{Report, Row};
@@ -121,12 +121,6 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     choices::measure(gpu, &watched, &mut report)?;
     seen::steadiness(gpu, (options.rounds, options.frame), &watched, &mut report)?;
     report.rows.extend(colours.concat().iter().flat_map(Colours::rows));
-    if options.sizes {
-        growth::measure(gpu, options, &mut report, progress)?;
-        let mut small = |done| progress("following small references", done, proxy_sizes::FOLLOWED);
-        proxy_sizes::measure(gpu, &mut report, &mut small)?;
-    }
-    reflection::measure(&mut report)?;
     Ok(report)
 }
 

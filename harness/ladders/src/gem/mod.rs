@@ -4,12 +4,9 @@
 mod choices;
 mod dispersion;
 mod error;
-mod growth;
+pub mod growth;
 mod measure;
 mod options;
-mod profile;
-pub mod proxy_sizes;
-mod reflection;
 mod rungs;
 mod seen;
 mod tables;
@@ -18,9 +15,8 @@ pub mod views;
 pub use error::Errors;
 pub use measure::run;
 pub use options::Options;
-pub use profile::profile;
 pub use rungs::{FILLED, MEASURES, RUNGS};
-pub use seen::change;
+pub use seen::{SAMPLES, change};
 
 use crate::ladder::Ladder;
 

@@ -15,9 +15,6 @@ pub struct Options {
     pub views: Vec<View>,
     /// Additional views for rungs that draw bodies of any shape.
     pub concave: Vec<View>,
-    /// Whether the proxy is also measured at small sizes, and stones of more and more facets are
-    /// timed, which takes some minutes.
-    pub sizes: bool,
     /// The rungs to measure.
     pub rungs: Vec<Rung>,
 }
@@ -25,6 +22,6 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
-        Self { rounds: 7, frame: [1920, 1080], views: VIEWS.to_vec(), concave: CONCAVE.to_vec(), sizes: true, rungs }
+        Self { rounds: 7, frame: [1920, 1080], views: VIEWS.to_vec(), concave: CONCAVE.to_vec(), rungs }
     }
 }
