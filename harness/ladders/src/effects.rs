@@ -1,9 +1,12 @@
 //! What each effect costs in time, SPIR-V instructions and bytes of resources: frames with the
 //! effect alone, without any effect, and with all of them.
 
-use super::table::{Table, figure};
-use super::timing::{self, Timed};
-use super::{CostError, Ladder, Options, Progress, Report, Row};
+use crate::error::CostError;
+use crate::ladder::Ladder;
+use crate::options::{Options, Progress};
+use crate::report::{Report, Row};
+use crate::table::{Table, figure};
+use crate::timing::{self, Timed};
 use glam::Vec3;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};

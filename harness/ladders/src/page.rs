@@ -1,7 +1,9 @@
 //! Inserts a report's tables between marks in the pages of `docs/`, so that no figure is copied by
 //! hand.
 
-use super::{LADDERS, Ladder, Report};
+use crate::ladder::Ladder;
+use crate::list::LADDERS;
+use crate::report::Report;
 use std::fmt::Write as _;
 
 /// The mark before a generated table, followed by the table's name.
@@ -21,10 +23,36 @@ pub const BUILTINS: &str = "builtins";
 /// Name of the table of functions whose bits differ between devices.
 pub const DIFFERENCES: &str = "differences";
 
+/// Names of the tables of studies (`./cook studies`), some of them of a ladder's report.
+pub const STUDIED: [&str; 22] = [
+    "proxy_sizes",
+    "growth",
+    "reflections",
+    "cdrf_law",
+    "cdrf_shadows",
+    "cdrf_head",
+    "cdrf_zones",
+    "cdrf_law_goals",
+    "outside",
+    "dynamic",
+    "dynamic_goals",
+    "restraint_throughput",
+    "restraint_tiles",
+    "restraint_variants",
+    "sphere_walks",
+    "sphere_widths",
+    "sphere_widths_with_unscattered",
+    "sphere_residuals",
+    "sphere_albedos",
+    "sphere_laws",
+    "sphere_choices",
+    "sphere_fits",
+];
+
 /// Returns the names of all tables.
 fn names() -> Vec<&'static str> {
     let of = |ladder: &Ladder| (ladder.tables)(&Report::default()).into_iter().map(|table| table.name);
-    LADDERS.iter().flat_map(of).chain([MODULES, CHOICES, BUILTINS, DIFFERENCES]).collect()
+    LADDERS.iter().flat_map(of).chain(STUDIED).chain([MODULES, CHOICES, BUILTINS, DIFFERENCES]).collect()
 }
 
 /// Checks that a page's marks are well formed.

@@ -1,13 +1,14 @@
 //! The rungs that `--quality` selects, as shown on a ladder's page.
 
-use super::{Report, Table};
+use crate::report::Report;
+use crate::table::Table;
 use lapidary_plan::ladder::{CUT, Ladder, SAME_TIME, Step};
 use lapidary_plan::quality::figure;
 use lapidary_plan::{Quality, Technique};
 
 /// Returns a table of the rungs selected by each quality of `techniques`, with their errors and
 /// times in `report` and the reason why each was chosen.
-pub(super) fn table(name: &'static str, report: &Report, techniques: &[Technique]) -> Table {
+pub(crate) fn table(name: &'static str, report: &Report, techniques: &[Technique]) -> Table {
     let ladders = techniques.iter().filter_map(|&technique| {
         let record = report.json().ok()?;
         Some((technique, Ladder::of_record(technique, &record).ok()?))

@@ -1,7 +1,7 @@
 //! A ladder's report: rows, each of which is one measurement.
 
-use super::table::Table;
-use super::{CostError, Ladder, Timing};
+use crate::error::CostError;
+use crate::timing::Timing;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -95,13 +95,6 @@ impl Report {
         let rows: Vec<String> = self.rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
         let empty = "\"rows\": []";
         Ok(head.replace(empty, &format!("\"rows\": [\n    {}\n  ]", rows.join(",\n    "))))
-    }
-
-    /// Returns all tables as text.
-    pub fn text(&self, ladder: &Ladder) -> String {
-        let tables = (ladder.tables)(self);
-        let tables: Vec<String> = tables.iter().filter(|table| !table.is_empty()).map(Table::text).collect();
-        format!("{}: {}\n\n{}", self.technique, self.run(), tables.join("\n"))
     }
 
     /// Returns a setting; 0 if the report lacks it.

@@ -1,10 +1,14 @@
 //! Bodies through which light comes: the distance of each technique from random walks, and the time
 //! of the same pictures.
 
-use super::optical_path::{Measured, WALKED, Walks, settings};
-use super::table::{Goal, Table, figure};
-use super::timing::{self, Timed};
-use super::{CostError, Ladder, Options, Progress, Report, Row, quality};
+use crate::error::CostError;
+use crate::ladder::Ladder;
+use crate::optical_path::{Measured, WALKED, Walks, settings};
+use crate::options::{Options, Progress};
+use crate::quality;
+use crate::report::{Report, Row};
+use crate::table::{Goal, Table, figure};
+use crate::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_plan::Technique;

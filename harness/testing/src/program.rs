@@ -34,10 +34,15 @@ pub fn cook(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Answer {
 
 /// Like [`cook`], with changes to the environment.
 pub fn cook_in(folder: &Path, arguments: &[impl AsRef<OsStr>], environment: &[(&str, &str)]) -> Answer {
+    run(&program(arguments.first().map(AsRef::as_ref)), folder, arguments, environment)
+}
+
+/// Runs a program of a suite's own, like [`cook_in`].
+pub fn run(program: &Path, folder: &Path, arguments: &[impl AsRef<OsStr>], environment: &[(&str, &str)]) -> Answer {
     // Without XDG_RUNTIME_DIR the Vulkan drivers complain on stderr, which some tests compare in
     // full.
     let runtime = tempfile::tempdir().expect("a temporary folder");
-    let output = Command::new(program(arguments.first().map(AsRef::as_ref)))
+    let output = Command::new(program)
         .args(arguments)
         .current_dir(folder)
         .env("XDG_RUNTIME_DIR", runtime.path())

@@ -1,8 +1,8 @@
 //! A ray inside a body that is not convex, and the boxes that it opens.
 
-use super::Diagram;
 use super::plane::{Section, at, section};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3, Vec4Swizzles as _, vec3};
 use lapidary_bvh_trace::traversal::{BVH_TRACE_FAR, BVH_TRACE_LEAF, trace};
 use lapidary_bvh_trace::{

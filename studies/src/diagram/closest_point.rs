@@ -1,8 +1,8 @@
 //! The lines along three vertex normals, and the point nearest to them.
 
-use super::Diagram;
 use super::plane::{Oblique, at};
 use super::scene::{Anchor, DIM, INK, Paint, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3, vec3};
 use lapidary_closest_point::{centre, direction, fallback};
 

@@ -1,8 +1,8 @@
 //! A ray inside a cut stone, and the planes ahead of it.
 
-use super::Diagram;
 use super::plane::{Section, at, flat, section};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_convex_trace::{CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, point, start, step, trace};
 use lapidary_refraction::refract;

@@ -1,8 +1,8 @@
 //! A walk over the map of a brilliant's facets.
 
-use super::Diagram;
 use super::plane::{Section, at};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, DVec3, DVec4, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_convex_trace::{ConvexTraceHit, step};
 use lapidary_convex_walk::{FacetMap, exit, facet_corners, square};

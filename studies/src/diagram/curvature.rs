@@ -1,8 +1,8 @@
 //! Curvature from neighbouring pixels: how far the normal turns over a step along the surface.
 
-use super::Diagram;
 use super::plane::{Section, at, flat};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Pen, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3};
 use lapidary_curvature::towards;
 

@@ -1,8 +1,8 @@
 //! The wavelengths of a ray that leaves a stone, each traced alone and all from one ray and its gradient.
 
-use super::Diagram;
 use super::plane::{Section, at, flat, section};
 use super::scene::{Anchor, DIM, INK, Paint, Pen, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3};
 use lapidary_dispersion::{
     DISPERSION_DIAMOND, DISPERSION_LINE_B, DISPERSION_LINE_D, DISPERSION_LINE_G, direction, enter, refract, sellmeier,

@@ -1,8 +1,8 @@
 //! How bright scattering matter looks from all sides, beside Lambert's law.
 
-use super::Diagram;
 use super::plane::{Section, at};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::DVec2;
 use lapidary_half_space::factor;
 

@@ -1,6 +1,6 @@
 //! Labels: words, and symbols with indices.
 
-use super::scene::Number;
+use super::number::Number;
 use serde::Serialize;
 
 /// A part of a label in one style.

@@ -1,8 +1,8 @@
 //! The path of least optical depth through a body with a dense vein, voxel by voxel.
 
-use super::Diagram;
 use super::plane::at;
 use super::scene::{ACCENT, Anchor, Paint, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, IVec3};
 use lapidary_optical_path::kernels::{Body, pull, seeded};
 use lapidary_optical_path::{edge, luminance, seed};

@@ -1,8 +1,8 @@
 //! Plane P behind a facet, its tiles, and the tile that a ray meets.
 
-use super::Diagram;
 use super::plane::{Oblique, at};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, SECOND, Scene};
+use super::sheet::Diagram;
 use glam::{DVec2, IVec2, Vec3, vec3};
 use lapidary_closest_point::{centre, direction};
 use lapidary_proxy_geometry::{

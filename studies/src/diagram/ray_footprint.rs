@@ -1,8 +1,8 @@
 //! The edge between two facets, as a ray and its pixel see it.
 
-use super::Diagram;
 use super::plane::at;
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3, Vec4, vec3};
 use lapidary_ray_footprint::{edge, neighbours, share};
 

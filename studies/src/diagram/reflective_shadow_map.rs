@@ -1,8 +1,8 @@
 //! What a lamp sees of a scene, texel by texel, and a point in shadow.
 
-use super::Diagram;
 use super::plane::{Section, at};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, SECOND, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3};
 use lapidary_reflective_shadow_map::{ReflectiveShadowMapView, clip, cosine, height, texel};
 

@@ -1,8 +1,8 @@
 //! Refraction into a stone and out of it, and where no light gets out.
 
-use super::Diagram;
 use super::plane::{at, flat, section};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Pen, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec3};
 use lapidary_refraction::{RefractionHit, reflect, refract, relative_index};
 

@@ -1,8 +1,8 @@
 //! A ray followed over a picture, by equal steps on the screen.
 
-use super::Diagram;
 use super::plane::{Section, at};
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Scene};
+use super::sheet::Diagram;
 use glam::DVec2;
 use lapidary_screen_trace::{crossing, distance, meets};
 

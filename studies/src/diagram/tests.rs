@@ -1,6 +1,6 @@
 //! What each diagram says is so, by another way than the one it was drawn by.
 
-use super::scene::Shape;
+use super::scene::{Scene, Shape};
 use super::*;
 use glam::{DVec2, Vec3, Vec4Swizzles as _};
 

@@ -1,8 +1,8 @@
 //! A mesh as voxels: crossings along a column, and what lies between them.
 
-use super::Diagram;
 use super::plane::at;
 use super::scene::{ACCENT, Anchor, DIM, INK, Paint, Scene, WARM};
+use super::sheet::Diagram;
 use glam::{DVec2, Vec2, Vec3, vec3};
 use lapidary_voxelization::{VoxelizationGrid, column, kernels, local};
 

@@ -290,21 +290,6 @@ const OTHERS: &[Row] = &[
     ("cost cdrf --from {}/untimed.json --fill {}/ladder.md", One, &["ladder.md: ", "no time of `lambert`"]),
     ("cost cdrf --fill {}/bad.md", One, &["bad.md: ", "no table `other`", "cdrf_lit"]),
     ("cost cdrf --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
-    ("cost sphere --rungs proxy-1", One, &["unexpected argument '--rungs'"]),
-    ("cost sphere --views brilliant", One, &["unexpected argument '--views'"]),
-    ("cost sphere --rounds 7", One, &["unexpected argument '--rounds'"]),
-    ("cost sphere --profile", One, &["unexpected argument '--profile'"]),
-    ("cost sphere --walks 0", One, &["--walks"]),
-    ("cost sphere --from {}/none.json", One, &["none.json: ", "cannot be read"]),
-    ("cost sphere --from {}/text.glb", One, &["text.glb: ", "not a sphere.json"]),
-    ("cost sphere --from {}/empty.json --walks 9", One, &["--walks", "--from"]),
-    (
-        "cost sphere --from {}/empty.json --fill {}/page.md",
-        One,
-        &["page.md: ", "no fits of a sphere of albedo 0.8 and radius 2"],
-    ),
-    ("cost sphere --fill {}/none.md", One, &["none.md: ", "cannot be read"]),
-    ("cost sphere --fill {}/bad.md", One, &["bad.md: ", "no table `other`", "sphere_widths"]),
     ("cost gem --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
     ("chek", One, &["chek", "check"]),
     ("list --jsn", One, &["--jsn"]),
@@ -470,7 +455,6 @@ fn write_bad_files(folder: &Path) {
     write("empty.json", report("sphere").as_bytes());
     write("untimed.json", report("cdrf").as_bytes());
     write("ladder.md", b"<!-- generated: cdrf_lit --><!-- end -->\n");
-    write("page.md", b"<!-- generated: sphere_widths --><!-- end -->\n");
     write("bad.md", b"<!-- generated: other --><!-- end -->\n");
     std::fs::create_dir(folder.join("folder.png")).expect("a folder");
     std::fs::create_dir(folder.join("folder.glb")).expect("a folder");

@@ -80,6 +80,44 @@ fn arguments_and_the_exit_code_are_the_programs_and_nothing_is_left_behind() {
     assert_eq!(std::fs::read_dir(temporary).expect("a folder").count(), 0);
 }
 
+/// A study that shares its ladder's report shows the tables of both; the ladder alone measures.
+#[test]
+fn what_was_measured_once_is_run_by_the_studies() {
+    let clone = Clone::new("echo \"$*, $CARGO_TARGET_DIR\" >>built", "echo cook");
+    std::fs::create_dir(clone.at("studies")).expect("made");
+    for program in ["ladders", "studies"] {
+        script(&clone.at(&format!("target/debug/{program}")), &format!("echo {program}"));
+    }
+    for (arguments, program) in [
+        ("cost sphere --walks 9", "studies"),
+        ("--adapter any cost --adapter any restraint", "studies"),
+        ("cost dynamic", "studies"),
+        ("cost outside", "studies"),
+        ("cost gem --rounds 1 --profile", "studies"),
+        ("cost gem --from gem.json --fill page.md", "studies"),
+        ("cost cdrf --from=cdrf.json", "studies"),
+        ("studies gem", "studies"),
+        ("cost gem --rungs proxy-1", "ladders"),
+        ("cost cdrf --profile", "ladders"),
+        ("cost optical_path --from optical_path.json", "ladders"),
+        ("cost", "ladders"),
+        ("list sphere", "cook"),
+    ] {
+        let words: Vec<&str> = arguments.split_whitespace().collect();
+        let (code, stdout, stderr) = clone.run(&words);
+        assert_eq!((code, stdout.trim()), (Some(0), program), "{arguments}: {stderr}");
+    }
+    // They are built by their own manifest, in the folder of the other builds.
+    let built = std::fs::read_to_string(clone.at("built")).expect("cargo ran");
+    let own = |line: &&str| line.contains("studies/Cargo.toml");
+    let target = format!(", {}", clone.at("target").display());
+    assert_eq!(built.lines().filter(own).count(), 8, "{built}");
+    assert!(
+        built.lines().filter(own).all(|line| line.contains("lapidary-studies") && line.ends_with(&target)),
+        "{built}"
+    );
+}
+
 #[test]
 fn what_is_built_runs_where_nothing_can_be_built() {
     let cargo =
@@ -140,6 +178,8 @@ fn the_help_lists_the_commands_of_every_program() {
         all.extend(listed(&String::from_utf8(output.stdout).expect("UTF-8")));
     }
     all.retain(|word| word != "help");
+    // Outside of the workspace, built when they are asked for.
+    all.push("studies".to_owned());
     all.sort();
     assert_eq!(listed(&help), all, "{help}");
 }

@@ -1,6 +1,6 @@
 //! Built-ins and operators of two and three floats, measured on samples.
 
-use super::{Measured, Start};
+use super::measured::{Measured, Start};
 use lapidary_assay::dispatch::DispatchError;
 use lapidary_assay::draws::mix;
 use lapidary_assay::interpreter::{Float, Slack};

@@ -1,6 +1,6 @@
 //! The measured built-ins as tables.
 
-use super::Report;
+use super::measured::Report;
 use std::fmt::Write as _;
 
 /// Returns a table of the measurements.

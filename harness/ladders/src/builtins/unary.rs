@@ -1,6 +1,6 @@
 //! Built-ins of one float, measured over all floats.
 
-use super::{Measured, Start};
+use super::measured::{Measured, Start};
 use lapidary_assay::dispatch::DispatchError;
 use lapidary_assay::interpreter::Float;
 use lapidary_assay::slack::allowance::{Accuracy as _, Wgsl};

@@ -1,6 +1,7 @@
 //! Errors of a rung's function against the one that it approximates.
 
-use super::{CostError, Row};
+use crate::error::CostError;
+use crate::report::Row;
 use glam::{UVec2, Vec3};
 use lapidary_cdrf::{self as mirror, oracle};
 use lapidary_gpu::Gpu;

@@ -1,6 +1,10 @@
 //! The frames of a rung that are timed, and the memory that they need besides mesh and material.
 
-use super::{CostError, MEASURES, Options, Report, Row, VIEWS, shader};
+use super::rungs::{MEASURES, VIEWS};
+use super::shader;
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use crate::timing::{self, Timed};
 use glam::{Vec2, Vec3};
 use lapidary_gpu::Gpu;

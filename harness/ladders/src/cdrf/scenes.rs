@@ -1,7 +1,9 @@
 //! Whole pictures compared with the committed random walks, with and without cast shadows, and the
 //! times of the same pictures.
 
-use super::{CostError, Options, Report, Row};
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use crate::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
@@ -16,7 +18,7 @@ use lapidary_snapshots::{EXR_SIDE, WalkedReference};
 /// Names of the scenes.
 pub const SCENES: [&str; 3] = ["skin", "skin_ring", "skin_bunny"];
 /// Width and height of the picture; two by two of its pixels correspond to one pixel of the walks.
-pub(super) const SIDE: u32 = 2 * EXR_SIDE;
+pub const SIDE: u32 = 2 * EXR_SIDE;
 
 /// Returns the name of a scene's view, with or without shadows.
 pub(super) fn view(scene: &str, shadows: bool) -> String {
@@ -25,7 +27,7 @@ pub(super) fn view(scene: &str, shadows: bool) -> String {
 
 /// Returns settings for one sample per pixel, no light but the scene's lights, no highlights, and
 /// per-vertex curvature.
-pub(super) fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
+pub fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
     Settings {
         samples: 1,
         rung: Rung::Diffuse(reflectance),
@@ -65,18 +67,21 @@ pub(super) fn measure(
             }
         }
     }
-    add_timed(gpu, (rows, &timed), options, report, progress)
+    add_timed(gpu, (rows, &timed), options.rounds, report, progress)
 }
 
 /// Times pictures, and adds the rows of each with its time.
-pub(super) fn add_timed(
+///
+/// # Errors
+/// Returns an error if the device fails.
+pub fn add_timed(
     gpu: &Gpu,
     (rows, timed): (Vec<Vec<Row>>, &[Timed<'_>]),
-    options: &Options<Reflectance>,
+    rounds: u32,
     report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
-    let timings = timing::time(gpu, timed, options.rounds, progress)?;
+    let timings = timing::time(gpu, timed, rounds, progress)?;
     for (rows, timing) in rows.into_iter().zip(timings) {
         let ms = timing.map(|timing| timing.ms);
         report.rows.extend(rows.into_iter().map(|row| row.timed(ms)));

@@ -1,6 +1,6 @@
 //! A rung's specialised shaders, counted in SPIR-V instructions.
 
-use super::CostError;
+use crate::error::CostError;
 use lapidary_render as render;
 use lapidary_render::Settings;
 use lapidary_render::shader::Shader;

@@ -1,8 +1,7 @@
 //! The reflectance ladder's tables and its plot.
 
+use super::rungs::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
 use super::scenes::{self, SCENES, SIDE};
-use super::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
-use super::{head, law};
 use crate::plot::{self, Axis, COLORS, Corner, Dot, Marker, Plot, Series};
 use crate::quality;
 use crate::report::{Report, TIME, all_pairs, dominated};
@@ -32,11 +31,6 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
             &VIEWS[2..],
         ),
         walked(report),
-        law::table(report),
-        law::shadows_table(report),
-        head::table(report),
-        law::zones_table(report),
-        law::goals(report),
         goals(report),
         paper(report),
     ]

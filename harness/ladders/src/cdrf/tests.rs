@@ -1,6 +1,7 @@
+use super::rungs::{BLUR, LAMBERT, PAPER};
 use super::*;
 use crate::page::fill;
-use crate::report::TIME;
+use crate::report::{Report, Row, TIME};
 use crate::{Plot, Timing};
 
 /// Adds a rung whose lit part takes `ms` with curvature from the screen and half of it from
@@ -50,7 +51,7 @@ fn table(report: &Report, name: &str) -> String {
 
 /// Returns the rungs marked as dominated in the text.
 fn dominated(report: &Report) -> Vec<String> {
-    let text = report.text(&LADDER);
+    let text = LADDER.text(report);
     let marked = text.lines().filter_map(|line| line.strip_suffix("dominated")?.split_whitespace().next());
     marked.map(str::to_owned).collect()
 }
@@ -88,7 +89,7 @@ fn a_rung_that_is_faster_with_one_source_of_curvature_alone_beats_none() {
 #[test]
 fn text_and_tables_show_every_rung() {
     let report = whole();
-    let text = report.text(&LADDER);
+    let text = LADDER.text(&report);
     assert!(RUNGS.iter().all(|rung| text.contains(rung)), "{text}");
     for name in ["cdrf_ladder", "cdrf_lit", "cdrf_whole"] {
         let made = table(&report, name);

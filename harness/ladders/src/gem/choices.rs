@@ -1,7 +1,10 @@
 //! What the end of a ray costs: what happens to its remainder, and where it ends.
 
+use super::error::Errors;
 use super::seen::{SAMPLES, Watched};
-use super::{CostError, Errors, Report, Row};
+use super::views;
+use crate::error::CostError;
+use crate::report::{Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render as render;
@@ -16,7 +19,7 @@ pub(super) fn measure(gpu: &Gpu, watched: &[Watched], report: &mut Report) -> Re
     for name in ["proxy-1+tracker", "walk-8+tracker"] {
         let Ok(rung) = name.parse::<Rung>() else { continue };
         for Watched { view, scene, reference, .. } in watched {
-            let side = super::views::SIDE;
+            let side = views::SIDE;
             let usual = Settings { rung, samples: SAMPLES, ..Settings::of_size(side, side) };
             let with = |gem: GemOptions| Settings { gem, ..usual.clone() };
             let dropped = GemOptions { rest_from_environment: false, ..usual.gem };

@@ -2,7 +2,8 @@
 //! only the dispersion differs.
 
 use super::views::View;
-use super::{CostError, Row};
+use crate::error::CostError;
+use crate::report::Row;
 use lapidary_assay::golden_section::golden_section;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Rung, Spectrum};

@@ -1,7 +1,10 @@
 //! A view as a rung draws it: errors, change to the next frame, and time of one picture.
 
+use super::error::Errors;
+use super::rungs::{FILLED, MEASURES};
 use super::views::{self, View};
-use super::{CostError, Errors, Report, Row};
+use crate::error::CostError;
+use crate::report::{Report, Row};
 use crate::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
@@ -44,7 +47,7 @@ impl Watched {
             rungs.iter().map(|(_, settings)| Timed::new(&self.scene, settings.clone())).collect();
         let timings = timing::time(gpu, &timed, rounds, &mut |_, _| {})?;
         for (((rung, _), seen), timing) in rungs.iter().zip(seen).zip(timings) {
-            for (measure, value) in super::MEASURES.into_iter().zip(seen) {
+            for (measure, value) in MEASURES.into_iter().zip(seen) {
                 let row = Row::new(rung, self.view.name, measure, value, "");
                 report.rows.push(row.timed(timing.map(|timing| timing.ms)));
             }
@@ -130,7 +133,7 @@ pub(super) fn steadiness(
         }
         if samples == 1 {
             let ms = timings.next().flatten().map(|timing| timing.ms);
-            report.rows.push(Row::new(STEADY, super::FILLED, &format!("time with {way}"), None, "").timed(ms));
+            report.rows.push(Row::new(STEADY, FILLED, &format!("time with {way}"), None, "").timed(ms));
         }
     }
     Ok(())

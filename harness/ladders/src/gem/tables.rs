@@ -1,15 +1,13 @@
 //! The gem ladder's tables and plots.
 
 use super::dispersion::Colours;
-use super::growth::{self, GROWTH};
-use super::proxy_sizes::{self as sizes};
-use super::reflection::PARTS;
+use super::growth::power_of;
+use super::rungs::{FILLED, MEASURES, RUNGS};
 use super::seen::{MEAN, STEADINESS, STEADY};
 use super::views::{self, VIEWS};
-use super::{FILLED, MEASURES, RUNGS};
-use crate::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
+use crate::plot::{self, Axis, Corner, Dot, Marker, Plot};
 use crate::quality;
-use crate::report::{Report, TIME, all_pairs, distinct, dominated};
+use crate::report::{Report, Row, TIME, all_pairs, distinct, dominated};
 use crate::table::{Goal, Table, beyond, figure, marked, mean, sum};
 use lapidary_plan::ladder::CONCAVE;
 use lapidary_plan::{Geometry, Rung, Spectrum, Technique};
@@ -22,8 +20,7 @@ const ALIKE: f64 = 1.001;
 pub(super) fn whole(report: &Report) -> Result<(), String> {
     report.all_timed(RUNGS, &[FILLED])?;
     let views = report.views("flip");
-    let missing = VIEWS.iter().chain(&views::CONCAVE).any(|view| !views.contains(&view.name));
-    if missing || report.rungs("mean").is_empty() {
+    if VIEWS.iter().chain(&views::CONCAVE).any(|view| !views.contains(&view.name)) {
         return Err("the report does not hold all views; only the whole ladder fills a page".to_owned());
     }
     Ok(())
@@ -97,13 +94,10 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
         quality::table("gem_quality", report, &[Technique::Convex, Technique::Concave]),
         concave(&gem),
         steadiness(&gem),
-        proxy_sizes(report),
-        growth(report),
         goals(&gem),
         paper(&gem),
         colours(report),
         ends(report),
-        reflections(report),
     ];
     for (name, measure) in ["gem_flip", "gem_rmse", "gem_energy", "gem_change"].into_iter().zip(MEASURES) {
         let value = |rung: &str, view: &str| report.value(rung, view, measure);
@@ -169,7 +163,7 @@ fn concave(gem: &Gem<'_>) -> Table {
 fn steadiness(gem: &Gem<'_>) -> Table {
     let report = gem.report;
     let [flip, apart, changes] = STEADINESS;
-    let with = |row: &&crate::Row| row.rung == STEADY && row.view == MEAN;
+    let with = |row: &&Row| row.rung == STEADY && row.view == MEAN;
     let ways: Vec<&str> = report.rows.iter().filter(with).filter_map(|row| row.measure.strip_prefix(changes)).collect();
     let value =
         |view: &str, measure: &str, way: &str| figure(report.value(STEADY, view, &format!("{measure}{way}")), 3);
@@ -186,50 +180,6 @@ fn steadiness(gem: &Gem<'_>) -> Table {
         .column("ms", |way| figure(ms(way), 1))
         .column("ms, filled", |way| figure(filled(way), 1))
         .note("")
-}
-
-fn proxy_sizes(report: &Report) -> Table {
-    let views = report.views("mean");
-    let part = |view: &str, at: usize| view.split(", ").nth(at).unwrap_or_default().to_owned();
-    let title = "The proxy at small sizes, 16 samples a pixel: mean radiance over the reference's, and RMSE";
-    let mut lines = Table::of("proxy_sizes", title, views)
-        .column("stone", |view| part(view, 0))
-        .column("environment", |view| part(view, 1))
-        .column("pixels", |view| part(view, 2));
-    for rung in std::iter::once(sizes::BLACK).chain(sizes::RUNGS) {
-        lines = lines.column(rung, |view| {
-            ["mean", "rmse"].map(|measure| figure(report.value(rung, view, measure), 2)).join(", ")
-        });
-    }
-    lines.note("")
-}
-
-/// Returns the numbers of facets and the milliseconds of a rung's frames.
-fn grown(report: &Report, rung: &str) -> Vec<(f64, f64)> {
-    let facets = |view: &str| view.split(' ').next()?.parse().ok();
-    let ms = |view| Some((facets(view)?, report.ms(rung, view, GROWTH)?));
-    report.views(GROWTH).into_iter().filter_map(ms).collect()
-}
-
-/// Returns the power of the number of facets with which a rung's time grows: the slope of the least
-/// squares through the logarithms.
-fn power_of(report: &Report, rung: &str) -> Option<f64> {
-    let points: Vec<(f64, f64)> = grown(report, rung).into_iter().map(|(x, y)| (x.ln(), y.ln())).collect();
-    let count = points.len() as f64;
-    let [x, y] = [0, 1].map(|part| points.iter().map(|point| [point.0, point.1][part]).sum::<f64>() / count);
-    let across = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>();
-    let along = points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>();
-    (points.len() > 2).then_some(across / along)
-}
-
-fn growth(report: &Report) -> Table {
-    let title = "Milliseconds for a frame that a brilliant fills, by its number of facets, and the power with which \
-                 they grow";
-    let mut lines = Table::of("growth", title, report.rungs(GROWTH)).column("rung", |rung| (*rung).to_owned());
-    for view in report.views(GROWTH) {
-        lines = lines.column(view, |rung| figure(report.ms(rung, view, GROWTH), 0));
-    }
-    lines.column("power", |rung| figure(power_of(report, rung), 2)).note("")
 }
 
 fn goals(gem: &Gem<'_>) -> Table {
@@ -365,36 +315,9 @@ fn ends(report: &Report) -> Table {
         .note("")
 }
 
-fn reflections(report: &Report) -> Table {
-    let title = "Total internal reflection at the first hit, brilliant face-up, share of the rays";
-    let mut lines =
-        Table::of("reflections", title, report.rungs("reflected")).column("mesh", |mesh| (*mesh).to_owned());
-    for part in PARTS {
-        let share = |mesh: &str| report.value(mesh, part, "reflected").map(|share| 100.0 * share);
-        lines = lines.column(format!("by the {part}"), |mesh| format!("{} %", figure(share(mesh), 1)));
-    }
-    lines.note("")
-}
-
 pub(super) fn plots(report: &Report) -> Vec<Plot> {
     let gem = Gem::new(report);
-    let mut plots = vec![plot(&gem, "gem_flip.svg", "flip"), plot(&gem, "gem_rmse.svg", "rmse")];
-    plots.push(growth_plot(report));
-    plots
-}
-
-/// Plots times against the number of facets.
-fn growth_plot(report: &Report) -> Plot {
-    let rungs = growth::RUNGS.into_iter().zip(plot::COLORS);
-    let lines = rungs.map(|(rung, color)| Series::line(rung, color, 2, grown(report, rung)).dotted());
-    Plot {
-        file: "gem_growth.svg",
-        caption: format!("Time by number of facets, {}, {}", report.size(), report.adapter),
-        x: Axis::log("facets of the stone").with_ticks([20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0]),
-        y: Axis::log("milliseconds a frame that the stone fills (least of interleaved rounds)"),
-        series: lines.filter(|line| !line.points.is_empty()).collect(),
-        legend: Corner::UpperLeft,
-    }
+    vec![plot(&gem, "gem_flip.svg", "flip"), plot(&gem, "gem_rmse.svg", "rmse")]
 }
 
 /// Plots the mean of a measure against the mean time of the views.
@@ -439,7 +362,7 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Row, Timing};
+    use crate::Timing;
 
     /// Returns a report of one view, in which each rung has a time, a FLIP and an RMSE.
     fn report(rungs: &[(&str, Option<f64>, f64, f64)]) -> Report {
@@ -465,7 +388,7 @@ mod tests {
             ("untimed", None, 0.9, 0.9),
         ];
         assert_eq!(Gem::new(&report(&rungs)).dominated(), ["slow", "worse"]);
-        let text = report(&rungs).text(&super::super::LADDER);
+        let text = super::super::LADDER.text(&report(&rungs));
         assert_eq!(text.lines().filter(|line| line.ends_with("dominated")).count(), 2, "{text}");
     }
 

@@ -1,6 +1,6 @@
 //! The views of the gem ladder: several cuts from several angles, each with a committed reference.
 
-use super::CostError;
+use crate::error::CostError;
 use lapidary_plan::Rung;
 use lapidary_reference::spectral;
 use lapidary_render::{Picture, Settings};

@@ -1,9 +1,12 @@
 //! The frames of a rung, which the ladder's errors belong to: their times, those of the bunny's
 //! separate stages, and the memory that they use.
 
-use super::views::{grey, scene, settings};
-use super::{COMPARED, CostError, GREY, MEASURES, Measured, Options, RGB, Report, STAGED, VIEWS, WALKED};
-use crate::Row;
+use super::measured::Measured;
+use super::rungs::{GREY, MEASURES, RGB, STAGED};
+use super::views::{COMPARED, VIEWS, WALKED, grey, scene, settings};
+use crate::error::CostError;
+use crate::options::Options;
+use crate::report::{Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render::{FrameTimer, Stage};

@@ -1,10 +1,8 @@
 //! The tables and plots of the ladder of optical paths.
 
 use super::frames::{SLOW, SLOW_ROUNDS};
-use super::views::{BALL, BLACK, DEEPEST};
-use super::{
-    CELLS, COMPARED, FINEST, GREY, GROWING, LAMBERT_SHADOWED, REFERENCE, RGB, RUNGS, STAGED, UNSCALED, USUAL, WALKED,
-};
+use super::rungs::{CELLS, FINEST, GREY, GROWING, LAMBERT_SHADOWED, REFERENCE, RGB, RUNGS, STAGED, UNSCALED, USUAL};
+use super::views::{BALL, BLACK, COMPARED, DEEPEST, WALKED};
 use crate::plot::{self, Axis, COLORS, Corner, Dot, Plot, Series};
 use crate::quality;
 use crate::report::{Report, dominated};

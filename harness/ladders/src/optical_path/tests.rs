@@ -1,6 +1,10 @@
+use super::rungs::{
+    CELLS, FINEST, GREY, GROWING, LAMBERT, LAMBERT_SHADOWED, REFERENCE, RGB, STAGED, UNSCALED, USUAL,
+};
 use super::*;
 use crate::page::fill;
-use crate::{Plot, Row};
+use crate::{Plot, Report, Row};
+use lapidary_plan::Rung;
 use lapidary_render::Stage;
 
 /// Adds a rung whose grey frame takes `ms`, half of it in the solver.
@@ -94,7 +98,7 @@ fn a_rung_is_dominated_by_a_faster_one_that_errs_no_more_in_any_view() {
 #[test]
 fn text_and_tables_show_every_rung() {
     let mut report = whole();
-    let text = report.text(&LADDER);
+    let text = LADDER.text(&report);
     assert!(RUNGS.iter().all(|rung| text.contains(rung)), "{text}");
     let ladder = table(&report, "optical_path_ladder");
     assert!(

@@ -1,7 +1,8 @@
 //! The views, and the errors of a rung's costs in them, pixel by pixel.
 
-use super::{FINEST, Measured};
-use crate::CostError;
+use super::measured::Measured;
+use super::rungs::FINEST;
+use crate::error::CostError;
 use glam::{DVec3, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_optical_path::oracle;

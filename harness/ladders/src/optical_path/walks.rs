@@ -1,9 +1,9 @@
 //! The committed pictures by random walks: a rung's distance from one after the best exposure, and
 //! the picture's own uncertainty.
 
-use super::Measured;
+use super::measured::Measured;
 use super::views::{SIDE, settings};
-use crate::CostError;
+use crate::error::CostError;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;

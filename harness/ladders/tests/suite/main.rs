@@ -9,5 +9,4 @@ mod footprint;
 mod gem;
 mod lamp_inside;
 mod reference;
-mod restraint;
 mod surroundings;

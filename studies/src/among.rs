@@ -1,0 +1,10 @@
+//! Tables of a study among those of the ladder whose report it shares.
+
+use lapidary_ladders::Table;
+
+/// Puts a study's tables behind the ladder's table with that name. One that the report has nothing for is left out, so
+/// that a page keeps it.
+pub(crate) fn insert(tables: &mut Vec<Table>, behind: &str, own: impl IntoIterator<Item = Table>) {
+    let at = tables.iter().position(|table| table.name == behind).map_or(tables.len(), |at| at + 1);
+    tables.splice(at..at, own.into_iter().filter(|table| !table.is_empty()));
+}
