@@ -7,7 +7,7 @@ use super::reflection::PARTS;
 use super::seen::{MEAN, STEADINESS, STEADY};
 use super::views::{self, VIEWS};
 use super::{FILLED, MEASURES, RUNGS};
-use crate::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
+use crate::plot::{self, Axis, Dot, Marker, Plot, Series};
 use crate::quality;
 use crate::report::{Report, TIME, all_pairs, distinct, dominated};
 use crate::table::{Goal, Table, beyond, figure, marked, mean, sum};
@@ -393,7 +393,6 @@ fn growth_plot(report: &Report) -> Plot {
         x: Axis::log("facets of the stone").with_ticks([20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0]),
         y: Axis::log("milliseconds a frame that the stone fills (least of interleaved rounds)"),
         series: lines.filter(|line| !line.points.is_empty()).collect(),
-        legend: Corner::UpperLeft,
     }
 }
 
@@ -432,7 +431,6 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
         x: Axis::log("milliseconds a view (least of interleaved rounds, mean over the views)"),
         y: Axis::log(format!("mean {measure} against the spectral reference")),
         series: plot::ladder(&dots, &groups, ("nothing faster is better", 2), ALIKE),
-        legend: Corner::LowerLeft,
     }
 }
 
@@ -475,7 +473,7 @@ mod tests {
         let plots_of_rungs = || plots(&timed).into_iter().filter(|plot| !plot.is_empty());
         assert_eq!(plots_of_rungs().count(), 2);
         for plot in plots_of_rungs() {
-            let svg = plot.svg().expect("drawn");
+            let svg = plot.svg();
             assert!(svg.contains("surface") && svg.contains("convex-4+tracker") && svg.ends_with("</svg>\n"), "{svg}");
         }
         assert!(plots(&report(&[("surface", None, 0.9, 0.9)])).iter().all(Plot::is_empty));

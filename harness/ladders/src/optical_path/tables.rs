@@ -5,7 +5,7 @@ use super::views::{BALL, BLACK, DEEPEST};
 use super::{
     CELLS, COMPARED, FINEST, GREY, GROWING, LAMBERT_SHADOWED, REFERENCE, RGB, RUNGS, STAGED, UNSCALED, USUAL, WALKED,
 };
-use crate::plot::{self, Axis, COLORS, Corner, Dot, Plot, Series};
+use crate::plot::{self, Axis, COLORS, Dot, Plot, Series};
 use crate::quality;
 use crate::report::{Report, dominated};
 use crate::table::{Goal, Table, bytes, figure, marked};
@@ -216,7 +216,6 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
             x: Axis::log("milliseconds a frame of the ball, one channel (least of interleaved rounds)"),
             y: Axis::log("root mean square error on the ball, nats"),
             series: plot::ladder(&dots, &GROUPS.map(|(_, name)| name), ("nothing faster is better", 2), 1.0),
-            legend: Corner::UpperRight,
         },
         Plot {
             file: "optical_path_growth.svg",
@@ -224,7 +223,6 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
             x: Axis::log("voxels along an edge of the grid").with_ticks(CELLS.map(f64::from)),
             y: Axis::log("milliseconds for the bunny, one channel (least of interleaved rounds)"),
             series: lines,
-            legend: Corner::UpperLeft,
         },
     ]
 }

@@ -4,7 +4,7 @@ use super::rule::{LAW_RADII, RANGES};
 use super::{
     ALBEDOS, ALL_LIGHT, CHOICES, FORMS, Form, RADII, ScaleKind, WALKS, of_albedo, profiles, range, rung, view,
 };
-use crate::plot::{Axis, COLORS, Corner, GREY, Plot, Series};
+use crate::plot::{Axis, COLORS, GREY, Plot, Series};
 use crate::report::Report;
 use crate::table::{Table, figure};
 use lapidary_cdrf as cdrf;
@@ -224,7 +224,6 @@ fn sigma(report: &Report) -> Plot {
         y: Axis::log("σR in mean free paths, the circular form with a free scale")
             .with_ticks([2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0]),
         series,
-        legend: Corner::UpperLeft,
     }
 }
 
@@ -266,7 +265,6 @@ fn profile(report: &Report) -> Plot {
         x: Axis::linear("angle between the normal and the light, degrees", (0.0, 180.0)),
         y: Axis::linear("exitance over the irradiance square to the light", (0.0, 0.9)),
         series,
-        legend: Corner::UpperRight,
     }
 }
 
@@ -279,7 +277,7 @@ mod tests {
     fn plots_show_every_line() {
         let sphere = |albedo| DRAWN.map(|radius| random_walk::profile(radius, albedo, 2000, 1)).to_vec();
         let report = super::super::report(2000, 1, &[sphere(ALBEDO), sphere(1.0)].concat());
-        let [sigma, profile] = [sigma(&report), profile(&report)].map(|plot| plot.svg().expect("drawn"));
+        let [sigma, profile] = [sigma(&report), profile(&report)].map(|plot| plot.svg());
         for part in ["albedo 0.99", "albedo 1", "R^", "mean free paths"] {
             assert!(sigma.contains(part), "{part}");
         }
