@@ -5,11 +5,9 @@ use super::labels::{self, Label, Line, Place, Wanted, Weight};
 use super::markup::{self, add, escaped, four_digits, path, rounded};
 use super::series::{Marker, Plot, Point, Series};
 
-/// Width, height and margins of a drawing in pixels, of which a letter is 14 high.
+/// What a drawing has room for, in pixels, of which a letter is 14 high.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
-    /// Width and height.
-    pub size: [f64; 2],
     /// Left, top, right and bottom of the plot's area.
     pub area: [f64; 4],
     /// Whether points are labelled that are not chosen.
@@ -191,7 +189,7 @@ mod tests {
     use super::super::series::{COLORS, GREY, Link};
     use super::*;
 
-    const FORMAT: Format = Format { size: [960.0, 540.0], area: [58.0, 34.0, 946.0, 484.0], labels: true };
+    const FORMAT: Format = Format { area: [58.0, 34.0, 946.0, 484.0], labels: true };
 
     #[test]
     fn points_stand_where_the_axes_say() {

@@ -45,7 +45,7 @@ impl Plot {
         let [left, top, right, bottom] = AREA;
         let legend = self.legend([left, bottom + 76.0], right);
         let height = bottom + 76.0 + LINE * legend.lines + 4.0;
-        let drawing = self.drawing(&Format { size: [WIDTH, height], area: AREA, labels: true });
+        let drawing = self.drawing(&Format { area: AREA, labels: true });
         let mut text = String::new();
         add(
             &mut text,
