@@ -4,7 +4,8 @@
 //! Errors and times are those of the committed ladders ([`lapidary_plan::ladder`]), by which defaults are chosen; a
 //! second plot has a GPU's times.
 
-mod axis;
+mod error;
+mod figures;
 mod kind;
 mod on_gpu;
 mod pictures;
@@ -12,47 +13,19 @@ mod plot;
 #[cfg(test)]
 mod tests;
 
+pub use error::LadderError;
 pub use kind::{KINDS, Kind};
 pub use on_gpu::{OnGpu, SIXTIETH};
 pub use pictures::{LadderPictures, REFERENCE, RungPicture, pictures};
+pub use plot::CPU;
 
 use super::templates::{self, Markup};
-use lapidary_ladders::{CostError, Report};
+use figures::figure;
+use lapidary_ladders::Report;
 use lapidary_plan::Quality;
 use lapidary_plan::ladder::{Ladder, Step};
-use lapidary_render::{RenderError, file::FileError};
-use lapidary_snapshots::SnapshotError;
-use plot::{Drawing, Point};
+use plot::Plot;
 use serde::Serialize;
-use std::path::PathBuf;
-
-/// The device of the committed ladders.
-pub const CPU: &str = "lavapipe on 2 CPU cores";
-
-/// Why the ladders could not be shown.
-#[derive(Debug, thiserror::Error)]
-pub enum LadderError {
-    /// A committed report or reference is missing or damaged.
-    #[error(transparent)]
-    Cost(#[from] CostError),
-    /// A committed reference is damaged.
-    #[error(transparent)]
-    Reference(#[from] SnapshotError),
-    /// A picture could not be drawn.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// A picture could not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A folder could not be made.
-    #[error("{}: cannot be made: {error}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// The system's error.
-        error: std::io::Error,
-    },
-}
 
 /// What the template shows of a ladder.
 #[derive(Serialize)]
@@ -70,32 +43,6 @@ struct Shown<'a> {
     /// Whether the table has a column of frames that the stone fills.
     filled: bool,
     compare: Option<Compare<'a>>,
-}
-
-/// The rungs by their times on one device.
-#[derive(Serialize)]
-struct Plot<'a> {
-    /// The device in short, and the size of the pictures that it drew.
-    device: String,
-    size: String,
-    /// The device in full.
-    adapter: &'a str,
-    /// What was timed, and over what is averaged.
-    measured: String,
-    drawings: Vec<Drawing>,
-    /// By number; those without a rung are left out.
-    series: Vec<Option<Series>>,
-    /// Defaults that another rung beats here, a sentence each.
-    beaten: Vec<String>,
-    /// Whether the pictures are those that a live page times.
-    is_live: bool,
-}
-
-/// A series of the legend.
-#[derive(Serialize)]
-struct Series {
-    name: &'static str,
-    mark: &'static str,
 }
 
 /// A line of the table.
@@ -164,7 +111,7 @@ impl<'a> Shown<'a> {
             title: kind.title,
             paragraph: kind.paragraph,
             error: kind.error,
-            plots: plots(kind, report, href),
+            plots: plot::plots(kind, report, href),
             report: kind.report,
             filled: steps.iter().any(|step| filled(&step.rung).is_some()),
             rows: steps
@@ -176,9 +123,9 @@ impl<'a> Shown<'a> {
                     ms: format!("{:.1}", step.ms),
                     filled: filled(&step.rung).map_or_else(String::new, |ms| format!("{ms:.0}")),
                     gpu: on_gpu.ms(&step.rung).map_or_else(String::new, |ms| format!("{ms:.1}")),
-                    qualities: qualities(kind, &step.rung).join(", "),
-                    front: is_front(&front, step),
-                    paper: kind.paper.contains(&step.rung.as_str()),
+                    qualities: kind.qualities(&step.rung).join(", "),
+                    front: front.iter().any(|other| other.rung == step.rung),
+                    paper: kind.is_of_paper(&step.rung),
                     href: href(&step.rung),
                 })
                 .collect(),
@@ -208,7 +155,7 @@ impl<'a> Compare<'a> {
                 || unmeasured.to_owned(),
                 |step| format!("{} {}, {:.1} ms by {CPU}", kind.error, figure(step.error), step.ms),
             );
-            let qualities = qualities(kind, &picture.rung).join(", ");
+            let qualities = kind.qualities(&picture.rung).join(", ");
             Compared {
                 picture,
                 href: format!("{root}{}", picture.file),
@@ -225,116 +172,5 @@ impl<'a> Compare<'a> {
         };
         let pictures: Vec<Compared<'_>> = pictures.iter().map(compared).collect();
         (!pictures.is_empty()).then(|| Self { scene: kind.scene(), left, right, pictures })
-    }
-}
-
-/// Returns the qualities that choose a rung.
-fn qualities(kind: &Kind, rung: &str) -> Vec<&'static str> {
-    let chosen = Quality::ALL.into_iter().filter(|quality| kind.technique.rung(*quality).to_string() == rung);
-    chosen.map(Quality::name).collect()
-}
-
-/// Returns the plots of a ladder: by the committed times, and by those of the GPU.
-fn plots<'a>(kind: &Kind, report: &'a Report, href: impl Fn(&str) -> Option<String>) -> Vec<Plot<'a>> {
-    let drawings = |ladder: &Ladder, steps: &[&Step], limit: Option<f64>| {
-        let front = ladder.front();
-        let points: Vec<Point> = steps.iter().map(|step| point(kind, &front, step, href(&step.rung))).collect();
-        plot::drawings(&points, limit)
-    };
-    let series = |steps: &[&Step]| {
-        let all = kind.series.iter().zip(plot::MARKS).enumerate();
-        all.map(|(at, ((_, name), mark))| {
-            let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == at);
-            is_there.then_some(Series { name, mark })
-        })
-        .collect()
-    };
-    let (Some(ladder), on_gpu) = (kind.ladder(), OnGpu::of(kind)) else { return Vec::new() };
-    let committed = Plot {
-        device: CPU.to_owned(),
-        size: kind.size(report),
-        adapter: &report.adapter,
-        measured: measured(kind, report),
-        drawings: drawings(ladder, &kind.steps(), None),
-        beaten: Vec::new(),
-        series: series(&kind.steps()),
-        is_live: true,
-    };
-    let there = on_gpu.ladder(ladder);
-    let mut steps: Vec<&Step> = kind.steps().into_iter().filter_map(|step| there.step(&step.rung)).collect();
-    steps.sort_by(|a, b| a.ms.total_cmp(&b.ms));
-    let filled = format!(
-        "frames of {} pixels that a brilliant fills, one sample each, the least of {} rounds; errors are those of the other plot",
-        on_gpu.report.size(),
-        on_gpu.report.setting("rounds")
-    );
-    let other = Plot {
-        device: on_gpu.name(),
-        size: on_gpu.size(kind),
-        adapter: &on_gpu.report.adapter,
-        measured: if on_gpu.fills { filled } else { measured(kind, &on_gpu.report) },
-        drawings: drawings(&there, &steps, on_gpu.fills.then_some(SIXTIETH)),
-        beaten: beaten(kind, &there),
-        series: series(&steps),
-        is_live: !on_gpu.fills,
-    };
-    vec![committed, other]
-}
-
-/// Says which defaults another rung beats by these times.
-fn beaten(kind: &Kind, ladder: &Ladder) -> Vec<String> {
-    let of = |quality: Quality| {
-        let step = ladder.step(&kind.technique.rung(quality).to_string())?;
-        let better = ladder.steps.iter().filter(|other| other.ms < step.ms && other.error < step.error);
-        let best = better.min_by(|a, b| a.error.total_cmp(&b.error))?;
-        Some(format!("{} is faster here than {quality}’s {}, and errs less.", best.rung, step.rung))
-    };
-    Quality::ALL.into_iter().filter_map(of).collect()
-}
-
-/// Says what was timed, and over what is averaged.
-fn measured(kind: &Kind, report: &Report) -> String {
-    let (side, views) = kind.measured(report);
-    let (rounds, count) = (report.setting("rounds"), views.len());
-    let views = views.join(", ");
-    format!(
-        "pictures of {side} × {side} pixels, one sample each, the least of {rounds} rounds; means over {count} views: {views}"
-    )
-}
-
-fn is_front(front: &[&Step], step: &Step) -> bool {
-    front.iter().any(|other| other.rung == step.rung)
-}
-
-fn point(kind: &Kind, front: &[&Step], step: &Step, href: Option<String>) -> Point {
-    let qualities = qualities(kind, &step.rung);
-    let default =
-        if qualities.is_empty() { String::new() } else { format!(", default of {}", qualities.join(" and ")) };
-    Point {
-        rung: step.rung.clone(),
-        ms: four_digits(step.ms),
-        error: four_digits(step.error),
-        series: kind.series_of(&step.rung) + 1,
-        front: is_front(front, step),
-        title: format!("{}: {} {}, {:.1} ms{default}", step.rung, kind.error, figure(step.error), step.ms),
-        qualities,
-        paper: kind.paper.contains(&step.rung.as_str()),
-        href,
-    }
-}
-
-/// Returns a value with four digits, so that pages stay small.
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
-}
-
-/// Shows an error with three digits.
-fn figure(error: f64) -> String {
-    if error >= 10.0 {
-        format!("{error:.1}")
-    } else if error >= 1.0 {
-        format!("{error:.2}")
-    } else {
-        format!("{error:.3}")
     }
 }

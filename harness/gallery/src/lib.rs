@@ -4,6 +4,7 @@
 pub mod choices;
 pub mod command;
 mod data;
+mod error;
 mod guides;
 mod highlight;
 pub mod ladder;
@@ -12,6 +13,7 @@ mod markdown;
 mod mathematics;
 mod mirror;
 mod pages;
+mod parts;
 pub mod pictures;
 mod places;
 pub mod rows;
@@ -21,21 +23,20 @@ mod techniques;
 pub mod templates;
 mod text;
 
+pub use error::GalleryError;
+
+use lapidary_cookbook as cookbook;
 use lapidary_cookbook::folder::{self, FolderError, Owner};
-use lapidary_cookbook::{self as cookbook, marks};
 use lapidary_gpu::Gpu;
-use lapidary_wgsl::Recipe;
 use pages::Page;
-use pictures::{Shown, Source};
+use parts::{LivePage, Parts, diagrams, docs, mirrors};
+use pictures::Source;
 use places::Places;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use take::Take;
-use techniques::Technique;
-use templates::Markup;
 
 /// What the gallery is made of besides the cookbook itself.
 #[derive(Clone, Debug)]
@@ -50,49 +51,6 @@ pub struct Site<'a> {
     pub rustdoc: Option<PathBuf>,
     /// What is made only by a device.
     pub device: Option<&'a Gpu>,
-}
-
-/// Why the gallery was not written. Anything that existed at its path is unchanged.
-#[derive(Debug, thiserror::Error)]
-pub enum GalleryError {
-    /// A picture's file is missing or damaged.
-    #[error("picture `{title}`: {} cannot be shown: {source}; render it again with `{command}`", file.display())]
-    Picture {
-        /// The picture's title.
-        title: String,
-        /// Expected path of its file.
-        file: PathBuf,
-        /// The command that renders it.
-        command: String,
-        /// The underlying file system error.
-        source: io::Error,
-    },
-    /// A file of the repository cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The underlying file system error.
-        source: io::Error,
-    },
-    /// The ladders were not drawn.
-    #[error(transparent)]
-    Ladder(#[from] ladder::LadderError),
-    /// A shader to take was not made.
-    #[error(transparent)]
-    Take(#[from] take::TakeError),
-    /// The live scenes were not written.
-    #[error(transparent)]
-    Live(#[from] live::LiveError),
-    /// The property rows were not written.
-    #[error(transparent)]
-    Rows(#[from] rows::RowsError),
-    /// What pages load on demand was not written.
-    #[error(transparent)]
-    Data(#[from] data::DataError),
-    /// The folder was not written.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
 }
 
 /// Whose folder a gallery is.
@@ -119,61 +77,6 @@ const ASSETS: &[(&str, &[u8])] = &[
     ("takes.css", include_bytes!("assets/takes.css")),
     ("theme.js", include_bytes!("assets/theme.js")),
 ];
-
-/// A diagram, drawn.
-#[derive(Clone, Debug, Serialize)]
-struct DrawnDiagram {
-    name: &'static str,
-    module: &'static str,
-    title: String,
-    caption: Vec<text::Span>,
-    svg: Markup,
-}
-
-/// A live page's contents.
-#[derive(Clone, Debug, Serialize)]
-struct LivePage {
-    scene: &'static str,
-    title: &'static str,
-    body: Markup,
-    ladder: &'static str,
-}
-
-/// What pages are made of.
-#[derive(Debug)]
-struct Parts<'a> {
-    adapter: &'a str,
-    pictures: Vec<Shown>,
-    places: Places,
-    docs: BTreeMap<String, String>,
-    mirrors: BTreeMap<&'static str, Vec<String>>,
-    takes: Vec<Take>,
-    diagrams: Vec<DrawnDiagram>,
-    ladders: BTreeMap<String, Markup>,
-    editors: BTreeMap<&'static str, Markup>,
-    live: Vec<LivePage>,
-    rustdoc: bool,
-}
-
-impl Parts<'_> {
-    /// Returns the text of a doc page.
-    ///
-    /// # Panics
-    /// If the page was not read, which [`docs`] does for all that are shown.
-    fn doc(&self, file: &str) -> &str {
-        self.docs.get(file).unwrap_or_else(|| panic!("{file} was not read"))
-    }
-
-    /// Returns the picture of that name; `None` if it is not shown.
-    fn picture(&self, name: &str) -> Option<&Shown> {
-        self.pictures.iter().find(|picture| picture.name == name)
-    }
-
-    /// Returns the scene of a technique's live page; `None` if there is none.
-    fn live_scene(&self, of: &Technique) -> Option<&'static str> {
-        self.live.iter().find(|live| live.scene == of.live).map(|live| live.scene)
-    }
-}
 
 /// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is either complete or
 /// unchanged, and the same site gives the same bytes, but for pictures by Godunov's scheme, which rounds by the order in
@@ -252,17 +155,9 @@ fn write_data(folder: &Path, pages: &[Page], takes: &[Take]) -> Result<(), Galle
         data::deliver(folder, &["source/", module.name].concat(), &module.source)?;
     }
     for recipe in lapidary_wgsl::RECIPES {
-        data::deliver(folder, &["source/recipe_", recipe.name].concat(), &source_of_recipe(recipe))?;
+        data::deliver(folder, &["source/recipe_", recipe.name].concat(), &pages::source_of_recipe(recipe))?;
     }
     Ok(())
-}
-
-/// Returns the text of a recipe to paste, as `cook copy` writes it.
-///
-/// # Panics
-/// If the recipe's marks are not well formed, which a test of all recipes finds.
-fn source_of_recipe(recipe: &Recipe) -> String {
-    marks::without(recipe, &[]).unwrap_or_else(|fault| panic!("{}:{}: {}", recipe.name, fault.line, fault.message))
 }
 
 /// The site's icon, for its template.
@@ -280,62 +175,6 @@ fn put(folder: &Path, path: &str, bytes: &[u8]) -> Result<(), GalleryError> {
     let fault = |source| FolderError::Write { path: file.clone(), source };
     fs::create_dir_all(parent).map_err(fault)?;
     Ok(fs::write(&file, bytes).map_err(fault)?)
-}
-
-fn read(path: PathBuf) -> Result<String, GalleryError> {
-    fs::read_to_string(&path).map_err(|source| GalleryError::Read { path, source })
-}
-
-/// Reads the doc pages that no module holds.
-fn docs(root: &Path) -> Result<BTreeMap<String, String>, GalleryError> {
-    let guides = guides::GUIDES.iter().chain(&guides::ENGINES).map(|guide| guide.file.to_owned());
-    let techniques = techniques::TECHNIQUES.iter().map(|of| ["docs/", of.doc, ".md"].concat());
-    let recipes = lapidary_wgsl::RECIPES.iter().map(|of| ["docs/recipes/", of.name, ".md"].concat());
-    // A recipe may have no page: those for hosts alone have.
-    let recipes = recipes.filter(|file| root.join(file).is_file());
-    guides.chain(techniques).chain(recipes).map(|file| Ok((file.clone(), read(root.join(&file))?))).collect()
-}
-
-fn mirrors(root: &Path) -> Result<BTreeMap<&'static str, Vec<String>>, GalleryError> {
-    let sources = |name: &'static str| {
-        let fault = |source| GalleryError::Read { path: root.join("crates").join(name), source };
-        Ok((name, mirror::sources(root, name).map_err(fault)?))
-    };
-    cookbook::modules().iter().map(|module| sources(module.name)).collect()
-}
-
-/// Returns the diagrams of every module's page, which shows each by a line `![caption](diagrams/NAME.svg)`.
-fn diagrams(root: &Path) -> Result<Vec<DrawnDiagram>, GalleryError> {
-    let mut drawn = Vec::new();
-    for module in cookbook::modules() {
-        for line in module.page.lines() {
-            let image = line.strip_prefix("![").and_then(|rest| rest.split_once("](diagrams/"));
-            let Some((caption, name)) = image.and_then(|(caption, file)| Some((caption, file.strip_suffix(".svg)")?)))
-            else {
-                continue;
-            };
-            let file = read(root.join("docs/diagrams").join([name, ".svg"].concat()))?;
-            drawn.push(DrawnDiagram {
-                name,
-                module: module.name,
-                title: between(&file, "<title", "</title>").split_once('>').map_or("", |(_, title)| title).to_owned(),
-                caption: text::prose(caption),
-                svg: Markup(without_style(&file)),
-            });
-        }
-    }
-    Ok(drawn)
-}
-
-/// Returns a diagram's markup without the style that a file of its own carries: the page's style sheet colours it.
-fn without_style(file: &str) -> String {
-    let style = ["<style>", between(file, "<style>", "</style>"), "</style>\n"].concat();
-    file.replacen(&style, "", 1)
-}
-
-/// Returns what stands between two texts; nothing if either is missing.
-fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
-    text.split_once(start).and_then(|(_, rest)| rest.split_once(end)).map_or("", |(inside, _)| inside)
 }
 
 fn copy_folder(from: &Path, to: &Path) -> Result<(), GalleryError> {

@@ -1,7 +1,7 @@
 //! The pictures on the site: each at its full size, and a small one for the page if it is large.
 
 use super::templates::{self, Markup};
-use super::{GalleryError, text};
+use super::{error::GalleryError, text};
 use image::codecs::jpeg::JpegEncoder;
 use lapidary_snapshots::{Committed, WALKED};
 use serde::Serialize;

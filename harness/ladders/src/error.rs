@@ -57,7 +57,4 @@ pub enum CostError {
     /// The instructions of the specialised recipe could not be counted.
     #[error("counting instructions: {0}")]
     Counts(#[from] SpirvCountsError),
-    /// The plot could not be drawn.
-    #[error("drawing the plot: {0}")]
-    Plot(String),
 }

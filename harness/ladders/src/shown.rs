@@ -171,7 +171,7 @@ pub fn show(
     let (text, json) = (ladder.text(&report), report.json()?);
     if let Some(out) = &shown.out {
         let plots = (ladder.plots)(&report).into_iter().filter(|plot| !plot.is_empty());
-        let plots = plots.map(|plot| Ok((plot.file.to_owned(), plot.svg()?))).collect::<Result<Vec<_>, CostError>>()?;
+        let plots = plots.map(|plot| (plot.file.to_owned(), plot.svg()));
         let reports = [(format!("{name}.txt"), text.clone()), (format!("{name}.json"), format!("{json}\n"))];
         for (file, contents) in reports.into_iter().chain(plots) {
             file::replace(&out.join(file), contents.as_bytes())?;

@@ -7,7 +7,7 @@ use crate::among::insert;
 use lapidary_ladders::Report;
 use lapidary_ladders::gem::LADDER;
 use lapidary_ladders::gem::growth::{GROWTH, grown, power_of};
-use lapidary_ladders::plot::{self, Axis, Corner, Plot, Series};
+use lapidary_ladders::plot::{self, Axis, Plot, Series};
 use lapidary_ladders::table::{Table, figure};
 
 /// Returns the studies' own tables: of small sizes, of the number of facets, and of reflections.
@@ -78,6 +78,5 @@ fn growth_plot(report: &Report) -> Plot {
         x: Axis::log("facets of the stone").with_ticks([20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0]),
         y: Axis::log("milliseconds a frame that the stone fills (least of interleaved rounds)"),
         series: lines.filter(|line| !line.points.is_empty()).collect(),
-        legend: Corner::UpperLeft,
     }
 }

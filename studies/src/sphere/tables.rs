@@ -7,7 +7,7 @@ use lapidary_cdrf as cdrf;
 use lapidary_ladders::Report;
 use lapidary_ladders::cdrf::sphere_fit::ScaleKind;
 use lapidary_ladders::cdrf::spheres::{WALKS, profiles, view};
-use lapidary_ladders::plot::{Axis, COLORS, Corner, GREY, Plot, Series};
+use lapidary_ladders::plot::{Axis, COLORS, GREY, Plot, Series};
 use lapidary_ladders::table::{Table, figure};
 use lapidary_reference::random_walk::BINS;
 
@@ -225,7 +225,6 @@ fn sigma(report: &Report) -> Plot {
         y: Axis::log("σR in mean free paths, the circular form with a free scale")
             .with_ticks([2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0]),
         series,
-        legend: Corner::UpperLeft,
     }
 }
 
@@ -267,7 +266,6 @@ fn profile(report: &Report) -> Plot {
         x: Axis::linear("angle between the normal and the light, degrees", (0.0, 180.0)),
         y: Axis::linear("exitance over the irradiance square to the light", (0.0, 0.9)),
         series,
-        legend: Corner::UpperRight,
     }
 }
 
@@ -280,7 +278,7 @@ mod tests {
     fn plots_show_every_line() {
         let sphere = |albedo| DRAWN.map(|radius| random_walk::profile(radius, albedo, 2000, 1)).to_vec();
         let report = crate::sphere::report(2000, 1, &[sphere(ALBEDO), sphere(1.0)].concat());
-        let [sigma, profile] = [sigma(&report), profile(&report)].map(|plot| plot.svg().expect("drawn"));
+        let [sigma, profile] = [sigma(&report), profile(&report)].map(|plot| plot.svg());
         for part in ["albedo 0.99", "albedo 1", "R^", "mean free paths"] {
             assert!(sigma.contains(part), "{part}");
         }

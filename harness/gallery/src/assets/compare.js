@@ -46,26 +46,11 @@
   const across = ({ x0, x1, left, right }, ms) => left + (Math.log(ms / x0) / Math.log(x1 / x0)) * (right - left);
   const up = ({ y0, y1, top, bottom }, error) => bottom + (Math.log(error / y0) / Math.log(y1 / y0)) * (top - bottom);
 
-  /** Parts of a power of ten, in tenths, that an axis may label: as in ladder/axis.rs. */
-  const PARTS = [[10, 12, 14, 16, 18, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90], [10, 20, 30, 40, 50, 60, 80], [10, 20, 50], [10]];
-  const MOST_TICKS = 9;
-  /** Width of a digit of an axis, and the room between its labels: as in ladder/plot.rs. */
-  const [DIGIT, ROOM] = [8.5, 6];
-
-  /** Returns labels for an axis: as many as can be told apart. */
-  const ticksOf = (scale) => {
-    const { x0, x1 } = scale;
-    const powers = [];
-    for (let power = Math.floor(Math.log10(x0)); power <= Math.log10(x1); power += 1) powers.push(power);
-    const of = (parts) => powers.flatMap((power) => parts.map((part) => Number(`${part}e${power - 1}`))).filter((ms) => ms >= x0 && ms <= x1);
-    const all = PARTS.map(of);
-    let end = -Infinity;
-    return (all.find((ticks) => ticks.length <= MOST_TICKS) ?? all.at(-1)).filter((ms) => {
-      const [at, half] = [across(scale, ms), (DIGIT * String(ms).length) / 2];
-      if (at - half < end + ROOM) return false;
-      end = at + half;
-      return true;
-    });
+  /** Returns the labels of the axis that have room between these ends. The plot lists each with the most powers of ten. */
+  const ticksOf = (svg, { x0, x1 }) => {
+    const decades = Math.log10(x1 / x0);
+    const all = svg.dataset.ticks.split(' ').map((tick) => tick.split(':'));
+    return all.filter(([ms, most]) => ms >= x0 && ms <= x1 && decades <= most).map(([ms]) => ms);
   };
 
   /** Lays a plot's columns anew, between the ends that it now has. */
@@ -74,11 +59,11 @@
     const model = columns[0];
     const columnOf = (ms) => {
       const column = model.cloneNode(true);
-      column.dataset.ms = ms;
+      column.dataset.x = ms;
       column.querySelector('text').textContent = ms;
       return column;
     };
-    model.parentNode.append(...ticksOf(scale).map(columnOf));
+    model.parentNode.append(...ticksOf(svg, scale).map(columnOf));
     columns.forEach((column) => column.remove());
   };
 
@@ -115,7 +100,7 @@
   const turn = (svg, scale) => {
     const { width } = svg.viewBox.baseVal;
     for (const label of all('.point .label', svg)) {
-      const x = across(scale, label.closest('.point').dataset.ms);
+      const x = across(scale, label.closest('.point').dataset.x);
       const [beside, length] = [Number(label.getAttribute('x')), label.getComputedTextLength()];
       const isOut = beside > 0 ? x + beside + length > width : x + beside - length < 0;
       if (!isOut) continue;
@@ -127,10 +112,10 @@
 
   /** Moves everything in a plot to where its scale now has it. */
   const relay = (svg, scale) => {
-    for (const column of all('.column', svg)) column.setAttribute('transform', `translate(${across(scale, column.dataset.ms)} 0)`);
+    for (const column of all('.column', svg)) column.setAttribute('transform', `translate(${across(scale, column.dataset.x)} 0)`);
     for (const point of all('.point', svg)) {
-      const { ms, error } = point.dataset;
-      point.setAttribute('transform', `translate(${across(scale, ms)} ${up(scale, error)})`);
+      const { x, y } = point.dataset;
+      point.setAttribute('transform', `translate(${across(scale, x)} ${up(scale, y)})`);
     }
     const front = svg.querySelector('path.front');
     const steps = front.dataset.front.split(' ').filter(Boolean).map((pair) => pair.split(',').map(Number));
@@ -157,7 +142,7 @@
     const before = scaleOf(svg);
     const scale = { ...before, x0: ms < before.x0 ? ms / room : before.x0, x1: ms > before.x1 ? ms * room : before.x1 };
     const clamped = Math.min(Math.max(error, scale.y0), scale.y1);
-    const point = drawn('g', { class: 'point visitor', 'data-ms': ms, 'data-error': clamped, 'data-label': label });
+    const point = drawn('g', { class: 'point visitor', 'data-x': ms, 'data-y': clamped, 'data-label': label });
     const toLeft = across(scale, ms) > (scale.left + scale.right) / 2;
     point.append(
       drawn('title', {}, `${label}: ${ms.toPrecision(3)} ms`),

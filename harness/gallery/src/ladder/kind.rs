@@ -1,12 +1,13 @@
 //! The ladders that the gallery shows: what each is of, and how its rungs' pictures are drawn.
 
+use super::error::LadderError;
 use lapidary_cookbook::repository;
 use lapidary_gpu::Gpu;
 use lapidary_ladders::gem::views::{CONCAVE, VIEWS, View};
 use lapidary_ladders::optical_path::{COMPARED, WALKED as TRANSLUCENT_VIEWS};
 use lapidary_ladders::{CostError, Report};
-use lapidary_plan::Technique;
 use lapidary_plan::ladder::{Ladder, Step};
+use lapidary_plan::{Quality, Technique};
 use lapidary_render::Picture;
 use lapidary_snapshots::{SHOTS, Shot, WalkedReference};
 
@@ -182,6 +183,17 @@ impl Kind {
         self.series.iter().position(|(starts, _)| starts.iter().any(|start| rung.starts_with(start))).unwrap_or(0)
     }
 
+    /// Returns the qualities that choose a rung.
+    pub(super) fn qualities(&self, rung: &str) -> Vec<&'static str> {
+        let chosen = Quality::ALL.into_iter().filter(|quality| self.technique.rung(*quality).to_string() == rung);
+        chosen.map(Quality::name).collect()
+    }
+
+    /// Whether a rung is the paper's.
+    pub(super) fn is_of_paper(&self, rung: &str) -> bool {
+        self.paper.contains(&rung)
+    }
+
     /// Returns the rung whose picture stands for this one: its own, or that of a measured rung which finds the same.
     pub(super) fn pictured<'a>(&self, rung: &'a str, steps: &[&'a Step]) -> &'a str {
         let twin = self.twins.iter().find_map(|(start, other)| Some(format!("{other}{}", rung.strip_prefix(start)?)));
@@ -238,7 +250,7 @@ impl Kind {
 
 impl Truth {
     /// Reads the committed picture: linear, and the exposure of its display.
-    pub(super) fn read(self, gpu: &Gpu) -> Result<Option<Picture>, super::LadderError> {
+    pub(super) fn read(self, gpu: &Gpu) -> Result<Option<Picture>, LadderError> {
         Ok(match self {
             Self::Spectral(name) => View::named(name).map(|view| view.reference(gpu)).transpose()?,
             Self::Walks(scene) => WalkedReference::of_scene(scene).map(|walked| walked.picture(gpu)).transpose()?,

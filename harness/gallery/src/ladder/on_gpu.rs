@@ -1,6 +1,6 @@
 //! What the one GPU took that was measured: its committed records.
 
-use super::{KINDS, Kind};
+use super::kind::{KINDS, Kind};
 use lapidary_ladders::Report;
 use lapidary_plan::ladder::{Ladder, Step};
 use lapidary_plan::{Rung, Technique};

@@ -1,9 +1,8 @@
 //! The pictures of a ladder's rungs: one scene, each rung, and the committed reference.
 
-use super::LadderError;
+use super::error::LadderError;
 use super::kind::{KINDS, Kind, SAMPLES, SIDE};
 use lapidary_gpu::Gpu;
-use lapidary_plan::Quality;
 use lapidary_plan::ladder::Step;
 use lapidary_render::{self as render, Picture, Settings, file};
 use lapidary_snapshots::EXR_SIDE;
@@ -99,9 +98,9 @@ fn drawn(kind: &Kind, steps: &[&'static Step]) -> Vec<&'static str> {
 
 /// Whether a choice is made by this rung's picture: it is on the front, a default, the paper's, or asked for by name.
 pub(super) fn is_chosen(kind: &Kind, rung: &str) -> bool {
-    let is_default = Quality::ALL.into_iter().any(|quality| kind.technique.rung(quality).to_string() == rung);
+    let is_default = !kind.qualities(rung).is_empty();
     let is_front = kind.ladder().is_some_and(|ladder| ladder.front().iter().any(|step| step.rung == rung));
-    is_default || is_front || kind.paper.contains(&rung) || kind.others.contains(&rung)
+    is_default || is_front || kind.is_of_paper(rung) || kind.others.contains(&rung)
 }
 
 /// Returns the file of a rung's picture below the site's folder.

@@ -1,4 +1,5 @@
 use super::*;
+use lapidary_ladders::plot::four_digits;
 use std::collections::HashSet;
 
 /// Returns a ladder's pictures as they would be drawn, without drawing them.
@@ -40,13 +41,13 @@ fn every_rung_of_the_report_is_in_the_table_and_in_both_drawings() {
         for step in kind.steps() {
             let row = format!("<th scope=\"row\">{}</th><td class=\"number\">{}</td>", step.rung, figure(step.error));
             assert_eq!(table.matches(&row).count(), 1, "{}: {row}", kind.name);
-            let point = format!("data-ms=\"{:?}\" data-error=\"{:?}\"", four_digits(step.ms), four_digits(step.error));
+            let point = format!("data-x=\"{}\" data-y=\"{}\"", four_digits(step.ms), four_digits(step.error));
             assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
         }
         for quality in Quality::ALL {
             let rung = kind.technique.rung(quality).to_string();
-            assert!(qualities(kind, &rung).contains(&quality.name()));
-            let names = qualities(kind, &rung).join(", ");
+            assert!(kind.qualities(&rung).contains(&quality.name()));
+            let names = kind.qualities(&rung).join(", ");
             assert_eq!(drawings.matches(&format!(">{names}: {rung}")).count(), 2, "{}: {names}: {rung}", kind.name);
         }
         assert!(!html.contains("<a "), "without pictures nothing leads to one");
@@ -67,7 +68,7 @@ fn what_the_gpu_was_measured_with_is_in_its_own_plot_and_in_the_table() {
         assert_eq!(drawings.matches("<g class=\"point ").count(), 2 * steps.len(), "{}", kind.name);
         for step in steps {
             let ms = gpu.ms(&step.rung).expect("measured");
-            let point = format!("data-ms=\"{:?}\" data-error=\"{:?}\"", four_digits(ms), four_digits(step.error));
+            let point = format!("data-x=\"{}\" data-y=\"{}\"", four_digits(ms), four_digits(step.error));
             assert!(drawings.matches(&point).count() >= 2, "{}: {point} of {}", kind.name, step.rung);
             let row = table.lines().find(|row| row.contains(&format!("<th scope=\"row\">{}</th>", step.rung)));
             // The last of figures, before what chooses the rung.

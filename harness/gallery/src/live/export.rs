@@ -1,15 +1,15 @@
 //! A live scene as data: the frames of its rungs with each choice of effects, and what its sliders move.
 
-use super::LiveError;
 use super::again::again;
 use super::copying;
+use super::error::LiveError;
 use super::fields::{self, Fields, Place};
 use super::scenes::{LiveScene, SAMPLES, SIDE, TIMED_SAMPLES, Toggle};
 use super::slider::{Moves, Slider};
 use super::store::Store;
 use lapidary_plan::{Decisions, ladder::Ladder};
+use lapidary_render::Settings;
 use lapidary_render::frame::Frame;
-use lapidary_render::{RenderError, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
 use rayon::prelude::*;
@@ -379,11 +379,5 @@ impl Sliding<'_> {
         }
         let table = |place: &Place| Some((place.clone(), found.get(&key(place))?.clone()));
         Ok(places.iter().filter_map(table).collect())
-    }
-}
-
-impl From<RenderError> for LiveError {
-    fn from(error: RenderError) -> Self {
-        Self::Render(Box::new(error))
     }
 }

@@ -1,8 +1,9 @@
 //! The part of a page that draws a scene live: its controls, and the scripts that run them.
 
 use super::super::templates::{self, Markup};
+use super::error::LiveError;
+use super::poster;
 use super::scenes::{LiveScene, SAMPLES, SIDE, TIMED_SAMPLES};
-use super::{LiveError, poster};
 use lapidary_scene::Scene;
 use serde::Serialize;
 

@@ -1,14 +1,16 @@
 //! A guide's page.
 
+use super::super::search::Entry;
 use super::super::{
-    Parts, choices,
+    choices,
     guides::Guide,
     markdown::{self, Heading},
+    parts::{LivePage, Parts},
     take,
     templates::{self, Markup},
     text,
 };
-use super::{Entry, Page, address};
+use super::page::{Page, address};
 use serde::Serialize;
 
 /// The guide to the rungs, and its section of tables: the page has the same tables with the shaders to copy instead.
@@ -26,7 +28,7 @@ struct Values<'a> {
     ladders: Vec<&'a Markup>,
     /// Shaders of the rungs, on the page that says which to choose.
     takes: Vec<take::Group<'a>>,
-    live: Vec<&'a super::super::LivePage>,
+    live: Vec<&'a LivePage>,
     /// The row of the rung for 60 frames a second.
     sixty: Option<&'a str>,
 }

@@ -2,74 +2,25 @@
 
 mod guide;
 mod module;
+mod page;
 mod pictures;
 mod recipe;
 mod start;
 mod technique;
 
-use super::Parts;
+pub use page::{Page, address};
+pub use recipe::source_of_recipe;
+
 use super::guides::{ENGINES, GUIDES};
+use super::parts::{LivePage, Parts};
 use super::search::Entry;
-use super::techniques::{TECHNIQUES, Technique};
+use super::techniques::TECHNIQUES;
 use super::templates::{self, Markup};
 use lapidary_cookbook::{self as cookbook, header::LICENCE};
 use serde::Serialize;
 
 /// A brilliant cut in side view, as line art: the site's mark.
 pub const MARK: &str = "M5 11 10 5H22L27 11 16 27ZM5 11H27M10 5 12 11 16 27 20 11 22 5M12 11 16 5 20 11";
-
-/// Styles and scripts of every page.
-const STYLES: [&str; 4] = ["style.css", "math.css", "syntax.css", "compare.css"];
-const SCRIPTS: [&str; 2] = ["site.js", "compare.js"];
-
-/// A page of the site.
-#[derive(Clone, Debug, Serialize)]
-pub struct Page {
-    /// Its path from the site's root, such as `modules/srgb.html`.
-    pub path: String,
-    /// Its title.
-    pub title: String,
-    /// What it is about, in a sentence.
-    pub description: String,
-    /// What kind of page it is: `start`, `technique`, `module`, `recipe`, `guide`, `live` or `pictures`.
-    pub kind: &'static str,
-    /// Its contents.
-    pub body: Markup,
-    /// Stylesheets in `assets/`.
-    pub styles: Vec<&'static str>,
-    /// Scripts in `assets/`.
-    pub scripts: Vec<&'static str>,
-    /// What of it can be searched for.
-    #[serde(skip)]
-    pub entries: Vec<Entry>,
-}
-
-impl Page {
-    /// Returns a page with the styles and scripts of all.
-    pub fn new(kind: &'static str, path: String, title: &str, description: &str, body: Markup) -> Self {
-        let (title, description) = (title.to_owned(), description.to_owned());
-        let (styles, scripts) = (STYLES.to_vec(), SCRIPTS.to_vec());
-        Self { path, title, description, kind, body, styles, scripts, entries: Vec::new() }
-    }
-
-    /// Adds a style and a script.
-    pub fn with(mut self, styles: &[&'static str], scripts: &[&'static str]) -> Self {
-        self.styles.extend(styles);
-        self.scripts.extend(scripts);
-        self
-    }
-}
-
-/// Returns the path of a page from the site's root.
-pub fn address(folder: &str, name: &str) -> String {
-    [folder, "/", name, ".html"].concat()
-}
-
-/// Returns the techniques that something belongs to: their pages, from a page in another folder, and their titles.
-fn techniques_with(has: impl Fn(&Technique) -> bool) -> Vec<(String, &'static str)> {
-    let of = TECHNIQUES.iter().filter(|of| has(of));
-    of.map(|of| (["../", &address("techniques", of.name)].concat(), of.title)).collect()
-}
 
 /// Returns all pages, in the order in which one reads on.
 pub fn all(parts: &Parts<'_>) -> Vec<Page> {
@@ -85,11 +36,11 @@ pub fn all(parts: &Parts<'_>) -> Vec<Page> {
 
 #[derive(Serialize)]
 struct Live<'a> {
-    live: &'a super::LivePage,
+    live: &'a LivePage,
     ladder: Option<&'a Markup>,
 }
 
-fn live_page(parts: &Parts<'_>, live: &super::LivePage) -> Page {
+fn live_page(parts: &Parts<'_>, live: &LivePage) -> Page {
     let path = address("live", live.scene);
     let body = templates::render("live_page.html", Live { live, ladder: parts.ladders.get(live.ladder) });
     let description = "The frames that the renderer makes, run by your browser on your GPU.";

@@ -1,15 +1,16 @@
 //! A module's page.
 
+use super::super::search::Entry;
 use super::super::{
-    DrawnDiagram, Parts,
     highlight::{self, Language, Piece},
     markdown::{self, Heading},
     mirror::{self, Coloured},
+    parts::{DrawnDiagram, Parts},
     rows,
     templates::{self, Markup},
     text::{self, Span, prose},
 };
-use super::{Entry, Page, address, techniques_with};
+use super::page::{Page, address, techniques_with};
 use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use lapidary_cookbook::{Module, header::FunctionDoc};
 use serde::Serialize;

@@ -1,7 +1,8 @@
 //! The page of all pictures.
 
-use super::super::{Parts, pictures::Shown, techniques::TECHNIQUES, templates};
-use super::{Entry, Page};
+use super::super::search::Entry;
+use super::super::{parts::Parts, pictures::Shown, techniques::TECHNIQUES, templates};
+use super::page::Page;
 use serde::Serialize;
 
 #[derive(Serialize)]

@@ -1,14 +1,15 @@
 //! A recipe's page.
 
+use super::super::search::Entry;
 use super::super::{
-    Parts,
     highlight::{self, Language, Piece},
     markdown,
+    parts::Parts,
     templates::{self, Markup},
     text::{Span, credit, prose},
 };
-use super::{Entry, Page, address, techniques_with};
-use lapidary_cookbook::header::parse_header;
+use super::page::{Page, address, techniques_with};
+use lapidary_cookbook::{header::parse_header, marks};
 use lapidary_wgsl::Recipe;
 use serde::Serialize;
 
@@ -26,6 +27,14 @@ struct Values<'a> {
     techniques: Vec<(String, &'static str)>,
 }
 
+/// Returns the text of a recipe to paste, as `cook copy` writes it.
+///
+/// # Panics
+/// If the recipe's marks are not well formed, which a test of all recipes finds.
+pub fn source_of_recipe(recipe: &Recipe) -> String {
+    marks::without(recipe, &[]).unwrap_or_else(|fault| panic!("{}:{}: {}", recipe.name, fault.line, fault.message))
+}
+
 /// Returns the page of a recipe.
 pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
     let path = address("recipes", recipe.name);
@@ -36,7 +45,7 @@ pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
         .map_or_else(markdown::Page::default, |text| markdown::page(text, &parts.places.of(&file)));
     let header = parse_header(recipe.source).ok();
     let purpose = header.as_ref().map_or("", |header| header.purpose.as_str());
-    let whole = super::super::source_of_recipe(recipe);
+    let whole = source_of_recipe(recipe);
     let overrides = recipe.own_text().into_iter().flat_map(overrides).map(|(name, text)| (name, prose(&text)));
     let values = Values {
         name: recipe.name,

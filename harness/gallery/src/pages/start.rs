@@ -2,9 +2,10 @@
 
 use super::super::choices::{self, Choice, Heading};
 use super::super::ladder::Kind;
+use super::super::search::Entry;
 use super::super::techniques::{TECHNIQUES, Technique};
-use super::super::{Parts, pictures::Shown, take::Take, templates, text};
-use super::Page;
+use super::super::{parts::Parts, pictures::Shown, take::Take, templates, text};
+use super::page::Page;
 use lapidary_cookbook as cookbook;
 use serde::Serialize;
 
@@ -50,7 +51,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
     let description = "A shader cookbook for gems and translucent materials: WGSL to paste, with its mathematics, its accuracy and its cost.";
     let mut page =
         Page::new("start", "index.html".to_owned(), "Lapidary, a shader cookbook for gems", description, body);
-    page.entries = vec![super::Entry::page("Start", &page.path, &text::plain(description))];
+    page.entries = vec![Entry::page("Start", &page.path, &text::plain(description))];
     page
 }
 

@@ -1,16 +1,17 @@
 //! A technique's page.
 
+use super::super::search::Entry;
 use super::super::{
-    Parts,
     ladder::Kind,
     markdown,
     mirror::{self, Coloured},
+    parts::{DrawnDiagram, Parts},
     pictures::Shown,
     take,
     techniques::{TECHNIQUES, Technique},
     templates::{self, Markup},
 };
-use super::{Entry, Page, address};
+use super::page::{Page, address};
 use lapidary_cookbook as cookbook;
 use serde::Serialize;
 
@@ -43,7 +44,7 @@ struct Values<'a> {
     takes: Vec<take::Group<'a>>,
     /// The technique to take in other light.
     beside: Option<Beside<'a>>,
-    diagrams: Vec<&'a super::super::DrawnDiagram>,
+    diagrams: Vec<&'a DrawnDiagram>,
     ladders: Vec<&'a Markup>,
     pictures: Vec<&'a Shown>,
     guides: Vec<Guide>,
@@ -146,7 +147,7 @@ fn has_hard_cases(name: &str) -> bool {
 }
 
 /// Returns the diagrams of the modules that are most its own.
-fn diagrams<'a>(parts: &'a Parts<'_>, of: &Technique) -> Vec<&'a super::super::DrawnDiagram> {
+fn diagrams<'a>(parts: &'a Parts<'_>, of: &Technique) -> Vec<&'a DrawnDiagram> {
     let of_module = |name: &&str| parts.diagrams.iter().find(|diagram| diagram.module == *name);
     of.modules.iter().filter_map(of_module).take(MOST_DIAGRAMS).collect()
 }

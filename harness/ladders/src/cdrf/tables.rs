@@ -2,7 +2,7 @@
 
 use super::rungs::{ANALYTIC, BLUR, CIRCULAR, LAMBERT, PAPER, RUNGS, SCREEN, SPHERICAL, TABLE, VIEWS};
 use super::scenes::{self, SCENES, SIDE};
-use crate::plot::{self, Axis, COLORS, Corner, Dot, Marker, Plot, Series};
+use crate::plot::{self, Axis, COLORS, Dot, Marker, Plot, Series};
 use crate::quality;
 use crate::report::{Report, TIME, all_pairs, dominated};
 use crate::table::{Goal, Table, beyond, bytes, figure, marked, scientific, sum};
@@ -275,6 +275,5 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
         x: Axis::log("milliseconds a frame filled by the lit body (least of interleaved rounds)"),
         y: Axis::log("largest error against the convolution"),
         series,
-        legend: Corner::UpperRight,
     }]
 }

@@ -5,7 +5,7 @@ use super::growth::power_of;
 use super::rungs::{FILLED, MEASURES, RUNGS};
 use super::seen::{MEAN, STEADINESS, STEADY};
 use super::views::{self, VIEWS};
-use crate::plot::{self, Axis, Corner, Dot, Marker, Plot};
+use crate::plot::{self, Axis, Dot, Marker, Plot};
 use crate::quality;
 use crate::report::{Report, Row, TIME, all_pairs, distinct, dominated};
 use crate::table::{Goal, Table, beyond, figure, marked, mean, sum};
@@ -355,7 +355,6 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
         x: Axis::log("milliseconds a view (least of interleaved rounds, mean over the views)"),
         y: Axis::log(format!("mean {measure} against the spectral reference")),
         series: plot::ladder(&dots, &groups, ("nothing faster is better", 2), ALIKE),
-        legend: Corner::LowerLeft,
     }
 }
 
@@ -398,7 +397,7 @@ mod tests {
         let plots_of_rungs = || plots(&timed).into_iter().filter(|plot| !plot.is_empty());
         assert_eq!(plots_of_rungs().count(), 2);
         for plot in plots_of_rungs() {
-            let svg = plot.svg().expect("drawn");
+            let svg = plot.svg();
             assert!(svg.contains("surface") && svg.contains("convex-4+tracker") && svg.ends_with("</svg>\n"), "{svg}");
         }
         assert!(plots(&report(&[("surface", None, 0.9, 0.9)])).iter().all(Plot::is_empty));

@@ -3,7 +3,7 @@
 use super::frames::{SLOW, SLOW_ROUNDS};
 use super::rungs::{CELLS, FINEST, GREY, GROWING, LAMBERT_SHADOWED, REFERENCE, RGB, RUNGS, STAGED, UNSCALED, USUAL};
 use super::views::{BALL, BLACK, COMPARED, DEEPEST, WALKED};
-use crate::plot::{self, Axis, COLORS, Corner, Dot, Plot, Series};
+use crate::plot::{self, Axis, COLORS, Dot, Plot, Series};
 use crate::quality;
 use crate::report::{Report, dominated};
 use crate::table::{Goal, Table, bytes, figure, marked};
@@ -214,7 +214,6 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
             x: Axis::log("milliseconds a frame of the ball, one channel (least of interleaved rounds)"),
             y: Axis::log("root mean square error on the ball, nats"),
             series: plot::ladder(&dots, &GROUPS.map(|(_, name)| name), ("nothing faster is better", 2), 1.0),
-            legend: Corner::UpperRight,
         },
         Plot {
             file: "optical_path_growth.svg",
@@ -222,7 +221,6 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
             x: Axis::log("voxels along an edge of the grid").with_ticks(CELLS.map(f64::from)),
             y: Axis::log("milliseconds for the bunny, one channel (least of interleaved rounds)"),
             series: lines,
-            legend: Corner::UpperLeft,
         },
     ]
 }
