@@ -7,7 +7,13 @@ use std::process::ExitCode;
 
 /// The site: `./cook gallery`.
 #[derive(Parser)]
-#[command(name = "cook", bin_name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
+#[command(
+    name = "cook",
+    bin_name = "cook",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: ./cook gallery --open"
+)]
 struct Arguments {
     #[command(flatten)]
     common: Common,

@@ -7,7 +7,13 @@ use std::process::ExitCode;
 
 /// What accuracy costs in time: `./cook cost` and `./cook builtins`.
 #[derive(Parser)]
-#[command(name = "cook", bin_name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook cost gem")]
+#[command(
+    name = "cook",
+    bin_name = "cook",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: ./cook cost gem"
+)]
 struct Arguments {
     #[command(flatten)]
     common: Common,

@@ -1,7 +1,7 @@
 //! The scenes that come with the program.
 
 use super::{Scene, SceneError};
-use list::{ALIASES, BUILT_IN, named};
+use list::{ALIASES, BUILT_IN, named, names};
 
 mod cut;
 mod framing;
@@ -19,7 +19,7 @@ mod vitrine;
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     match named(name) {
         Some(scene) => (scene.make)(scene.name),
-        None => Err(SceneError::UnknownName { name: name.to_owned(), hint: hint(name) }),
+        None => Err(SceneError::UnknownName { name: name.to_owned(), hint: hint(name), known: names() }),
     }
 }
 

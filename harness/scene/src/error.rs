@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::built_in::list::names;
 use super::cuts::CutError;
 use super::gltf::GltfError;
 
@@ -12,12 +11,14 @@ use super::gltf::GltfError;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error("no scene is called `{}`{hint}; give one of {} or a .glb or .gltf file", name.escape_debug(), names())]
+    #[error("no scene is called `{}`{hint}; give one of {known} or a .glb or .gltf file", name.escape_debug())]
     UnknownName {
         /// The name that was asked for.
         name: String,
         /// ` (did you mean ...?)` if a built-in scene's name is close, otherwise empty.
         hint: String,
+        /// The built-in scenes' names.
+        known: String,
     },
     /// A file cannot be used.
     #[error("{}: {problem}", path.display())]

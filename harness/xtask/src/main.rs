@@ -7,7 +7,13 @@ use std::process::ExitCode;
 
 /// The project's own workshop: `./cook test`, `new`, `dist` and `snapshots`.
 #[derive(Parser)]
-#[command(name = "cook", bin_name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook test")]
+#[command(
+    name = "cook",
+    bin_name = "cook",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: ./cook test"
+)]
 struct Arguments {
     #[command(flatten)]
     common: Common,

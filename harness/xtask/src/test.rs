@@ -47,12 +47,12 @@ pub struct Arguments {
     show: bool,
 }
 
-/// Cargo's names of the test programs.
+/// Cargo's names of the test programs. All name the workspace: a package by itself would be built with other features.
 const TARGETS: [&str; 9] = ["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"];
 /// Those that can write what is generated.
-const REFRESHED: [&str; 7] = ["--package", "lapidary-cook", "--package", "lapidary-xtask", "--bins", "--test", "suite"];
+const REFRESHED: [&str; 4] = ["--workspace", "--bins", "--test", "suite"];
 /// The mutation tests, which run last: they take long, and a test that fails says more.
-const MUTATION: [&str; 4] = ["--package", "lapidary-cook", "--test", "mutation"];
+const MUTATION: [&str; 3] = ["--workspace", "--test", "mutation"];
 
 /// Tests that a quick run skips: those whose names contain one of these.
 const SLOW: [&str; 39] = [

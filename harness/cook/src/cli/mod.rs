@@ -18,7 +18,13 @@ use std::process::ExitCode;
 
 /// A shader cookbook for gems: copy the WGSL, test its formulas, look at the pictures.
 #[derive(Parser)]
-#[command(name = "cook", bin_name = "cook", version, arg_required_else_help = true, after_help = "Example: cook render brilliant")]
+#[command(
+    name = "cook",
+    bin_name = "cook",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: cook render brilliant"
+)]
 struct Arguments {
     #[command(flatten)]
     common: Common,

@@ -20,7 +20,8 @@ fn without_arguments_it_prints_help() {
     let answer = cook(folder().path(), &[] as &[&str]);
     assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
     let help = answer.stdout + &answer.stderr;
-    for command in ["check", "list", "copy", "plan", "frame", "render", "scene", "compare", "completions", "--adapter"] {
+    for command in ["check", "list", "copy", "plan", "frame", "render", "scene", "compare", "completions", "--adapter"]
+    {
         assert!(help.contains(command), "{command}: {help}");
     }
     let asked = succeeds(folder().path(), &["--help"]);

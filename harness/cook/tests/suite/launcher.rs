@@ -164,8 +164,10 @@ fn the_help_lists_the_commands_of_every_program() {
     let help = String::from_utf8(help).expect("UTF-8");
     let listed = |text: &str| -> Vec<String> {
         let words = text.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
-        let mut words: Vec<String> =
-            words.filter(|word| word.starts_with(|first: char| first.is_ascii_lowercase())).map(str::to_owned).collect();
+        let mut words: Vec<String> = words
+            .filter(|word| word.starts_with(|first: char| first.is_ascii_lowercase()))
+            .map(str::to_owned)
+            .collect();
         words.sort();
         words
     };

@@ -1,6 +1,4 @@
-use super::rungs::{
-    CELLS, FINEST, GREY, GROWING, LAMBERT, LAMBERT_SHADOWED, REFERENCE, RGB, STAGED, UNSCALED, USUAL,
-};
+use super::rungs::{CELLS, FINEST, GREY, GROWING, LAMBERT, LAMBERT_SHADOWED, REFERENCE, RGB, STAGED, UNSCALED, USUAL};
 use super::*;
 use crate::page::fill;
 use crate::{Plot, Report, Row};
