@@ -231,7 +231,7 @@ fn what_never_ends_is_not_read() {
         let says = if path == "." { "it is a folder" } else { "it is not a regular file" };
         assert!(answer.stderr.contains(&format!("cannot be read: {says}")), "{answer:?}");
     }
-    for arguments in [["cost", "gem", "--from", "/dev/zero"], ["cost", "sphere", "--fill", "/dev/zero"]] {
+    for arguments in [["cost", "gem", "--from", "/dev/zero"], ["cost", "effects", "--fill", "/dev/zero"]] {
         let answer = cook(folder.path(), &arguments);
         assert_eq!(answer.code, Some(2), "{answer:?}");
         assert!(answer.stderr.contains("/dev/zero: cannot be read: it is not a regular file"), "{answer:?}");
