@@ -3,7 +3,7 @@
 import { readFileSync } from 'node:fs';
 import vm from 'node:vm';
 
-const ASSETS = new URL('../../src/gallery/assets/', import.meta.url);
+const ASSETS = new URL('../../src/assets/', import.meta.url);
 
 for (const name of ['environment.js', 'piz.js']) {
   vm.runInThisContext(readFileSync(new URL(name, ASSETS), 'utf8'), { filename: name });
