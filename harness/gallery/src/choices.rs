@@ -1,14 +1,15 @@
 //! The rungs that the qualities choose, as the planner has them, and those that serve a GPU better, with their figures
 //! on two devices.
 
+mod page;
 mod sixty;
 
 use super::ladder::{CPU, KINDS, Kind, OnGpu};
-use super::templates;
 use lapidary_plan::ladder::{SAME_TIME, Step};
 use lapidary_plan::{Quality, Rung};
+pub use page::page;
 use serde::Serialize;
-use sixty::Sixty;
+use sixty::shown;
 
 /// Label of the rung that errs least among those that the GPU draws faster than that of `fast`.
 const ON_A_GPU: &str = "fast, on a GPU";
@@ -98,13 +99,6 @@ pub struct Heading {
     pub filled_size: Option<String>,
 }
 
-/// A ladder's choices, for the page.
-#[derive(Serialize)]
-struct Group {
-    heading: Heading,
-    choices: Vec<Choice>,
-}
-
 /// Returns the choices of every ladder.
 pub fn all() -> Vec<Choice> {
     KINDS.iter().flat_map(of_kind).collect()
@@ -192,23 +186,6 @@ fn gloss(measure: &str) -> &'static str {
 
 fn timed((rung, ms): &(String, f64)) -> Timed {
     Timed { rung: rung.clone(), ms: shown(*ms) }
-}
-
-fn shown(ms: f64) -> String {
-    format!("{ms:.1}")
-}
-
-/// Returns the generated part of `docs/choosing.md`.
-pub fn page() -> String {
-    #[derive(Serialize)]
-    struct Values {
-        groups: Vec<Group>,
-        sixty: Sixty,
-        unmeasured: Vec<Choice>,
-    }
-    let groups = KINDS.iter().map(|kind| Group { heading: heading(kind), choices: of_kind(kind) }).collect();
-    let unmeasured = all().into_iter().filter(|choice| choice.gpu.is_none()).collect();
-    templates::render("choices.md", Values { groups, sixty: sixty::sixty(), unmeasured }).0 + "\n"
 }
 
 #[cfg(test)]
