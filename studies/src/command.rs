@@ -6,7 +6,6 @@ use lapidary_gpu::Gpu;
 use lapidary_ladders::shown::{Rungs, Shown, Timed, behind_a_bar, on_gpu, prepare, read, show, timed};
 use lapidary_ladders::{CostError, Ladder, Options, Progress, Report, Table};
 use lapidary_plan::Rung;
-use lapidary_render::file;
 use std::path::{Path, PathBuf};
 
 /// Measures what was measured once and decided. Times are the minimum over interleaved rounds; leave
@@ -174,7 +173,7 @@ fn profile(context: &Context, arguments: &Timed) -> Result<Outcome, Failure> {
         gem::profile(gpu, arguments.rounds.unwrap_or(ROUNDS).max(1), FRAME, &mut timing)
     })?;
     if let Some(out) = &arguments.shown.out {
-        file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
+        lapidary_files::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
     }
     output::line(&text)?;
     Ok(Outcome::Passed)

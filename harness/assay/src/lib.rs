@@ -45,10 +45,10 @@
 //! ```
 //!
 //! Without the feature `gpu`, only the parts that need no device remain: random inputs ([`draws`]),
-//! shapes, values and tolerances.
+//! shapes, values and tolerances; with `reflect` alone also signatures, and kernels as text.
 
 pub mod accuracy_line;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "reflect")]
 pub mod dispatch;
 pub mod draws;
 #[cfg(feature = "gpu")]
@@ -77,7 +77,7 @@ pub mod runner;
 pub mod shape;
 #[cfg(feature = "gpu")]
 pub mod slack;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "reflect")]
 pub mod tokens;
 pub mod tolerance;
 pub mod value;

@@ -213,7 +213,7 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
         let names: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
         return Err(CheckError::Unknown(format!(
             "no module `{module}`{}",
-            lapidary_scene::nearest::suggest(module, &names)
+            lapidary_files::nearest::suggest(module, &names)
         )));
     };
     let Some(function) = function else {
@@ -222,7 +222,7 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
     let found = module.function(function).and_then(|found| formulas::of_function(&found.name));
     found.map(|formula| vec![formula]).ok_or_else(|| {
         let names: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
-        let hint = lapidary_scene::nearest::suggest_function(module.name, function, &names);
+        let hint = lapidary_files::nearest::suggest_function(module.name, function, &names);
         CheckError::Unknown(format!("module `{}` has no function `{function}`{hint}", module.name))
     })
 }

@@ -97,7 +97,7 @@ fn read(path: &Path) -> Result<Picture, CompareError> {
     };
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable(lapidary_scene::not_a_file(&metadata).to_owned()));
+        return Err(unreadable(lapidary_files::not_a_file(&metadata).to_owned()));
     }
     let reader = ImageReader::open(path).map_err(|error| unreadable(error.to_string()))?;
     let reader = reader.with_guessed_format().map_err(|error| unreadable(error.to_string()))?;

@@ -1,10 +1,8 @@
 //! The cookbook as data: its modules, what their comments promise, the marks of recipes.
 
-pub mod folder;
 pub mod header;
 pub mod marks;
 pub mod repository;
-pub mod text_file;
 
 use header::{FunctionDoc, Header};
 use std::sync::OnceLock;

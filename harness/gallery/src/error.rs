@@ -5,7 +5,7 @@ use super::ladder::LadderError;
 use super::live::LiveError;
 use super::rows::RowsError;
 use super::take::TakeError;
-use lapidary_cookbook::folder::FolderError;
+use lapidary_files::folder::FolderError;
 use std::io;
 use std::path::PathBuf;
 

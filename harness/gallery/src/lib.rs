@@ -26,7 +26,7 @@ mod text;
 pub use error::GalleryError;
 
 use lapidary_cookbook as cookbook;
-use lapidary_cookbook::folder::{self, FolderError, Owner};
+use lapidary_files::folder::{self, FolderError, Owner};
 use lapidary_gpu::Gpu;
 use pages::Page;
 use parts::{LivePage, Parts, diagrams, docs, mirrors};

@@ -7,10 +7,9 @@ use crate::options::{Options, Progress};
 use crate::page;
 use crate::report::Report;
 use lapidary_cook::command::{Context, Failure, Outcome, number, output, progress};
-use lapidary_cookbook::text_file;
+use lapidary_files::text_file;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
-use lapidary_render::file;
 use std::path::{Path, PathBuf};
 
 /// Source and destination of a report.
@@ -136,7 +135,7 @@ pub fn read(ladder: &str, path: &Path) -> Result<Report, Failure> {
 pub fn prepare(out: &Path, name: &str) -> Result<(), Failure> {
     let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
     std::fs::create_dir_all(out).map_err(failed)?;
-    Ok(file::check_writable(&out.join(name))?)
+    Ok(lapidary_files::check_writable(&out.join(name))?)
 }
 
 /// Measures a ladder or reads its report, writes the report's files and pages, and prints it. Files
@@ -158,7 +157,7 @@ pub fn show(
     for path in &shown.fill {
         let page = read_text(path)?;
         page::check(&page).map_err(|error| at(path, &error))?;
-        file::check_writable(path)?;
+        lapidary_files::check_writable(path)?;
         pages.push((path, page));
     }
     let report = match &shown.from {
@@ -174,11 +173,11 @@ pub fn show(
         let plots = plots.map(|plot| (plot.file.to_owned(), plot.svg()));
         let reports = [(format!("{name}.txt"), text.clone()), (format!("{name}.json"), format!("{json}\n"))];
         for (file, contents) in reports.into_iter().chain(plots) {
-            file::replace(&out.join(file), contents.as_bytes())?;
+            lapidary_files::replace(&out.join(file), contents.as_bytes())?;
         }
     }
     for (path, page) in pages {
-        file::replace(path, page.as_bytes())?;
+        lapidary_files::replace(path, page.as_bytes())?;
     }
     output::line(if shown.json { &json } else { text.trim_end() })?;
     Ok(Outcome::Passed)

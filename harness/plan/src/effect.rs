@@ -1,6 +1,6 @@
 //! The effects, each with its one name.
 
-use lapidary_scene::nearest::suggest;
+use lapidary_files::nearest::suggest;
 use std::fmt;
 use std::str::FromStr;
 

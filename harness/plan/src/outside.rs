@@ -1,7 +1,7 @@
 //! What light that leaves a clear stone meets.
 
 use crate::Effect;
-use lapidary_scene::nearest::suggest;
+use lapidary_files::nearest::suggest;
 use std::fmt;
 use std::str::FromStr;
 

@@ -1,6 +1,6 @@
 //! The rungs of the ladder: how exactly light is followed.
 
-use lapidary_scene::nearest;
+use lapidary_files::nearest;
 use lapidary_scene::solver::{Diffusion, NoSolver, Paths, Reflectance, Solver};
 use std::fmt;
 use std::str::FromStr;

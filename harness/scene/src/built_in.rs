@@ -26,6 +26,6 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
 /// Returns the built-in whose name, or alias, is most like `name`.
 fn hint(name: &str) -> String {
     let known = BUILT_IN.iter().map(|scene| scene.name).chain(ALIASES.iter().map(|(alias, _)| *alias));
-    let near = crate::nearest::close(name, known).and_then(named);
+    let near = lapidary_files::nearest::close(name, known).and_then(named);
     near.map_or(String::new(), |scene| format!(" (did you mean `{}`?)", scene.name))
 }

@@ -217,7 +217,7 @@ fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {
     let unreadable = |reason: String| EnvironmentMapError::Unreadable { path: path.to_owned(), reason };
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable(crate::not_a_file(&metadata).to_owned()));
+        return Err(unreadable(lapidary_files::not_a_file(&metadata).to_owned()));
     }
     if metadata.len() > MAX_FILE_BYTES {
         let size = metadata.len();

@@ -7,6 +7,7 @@ use super::files::folder;
 use super::shots::{self, SHOTS, Shot};
 use super::sizes::{EXR_SIDE, LARGEST_FILE};
 use super::strip;
+use lapidary_files::WriteError;
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, file};
@@ -151,7 +152,8 @@ pub fn accept(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Resul
     for picture in [seen, linear] {
         comparison::require_finite(&format!("the new picture {name}"), picture.width, &picture.linear)?;
     }
-    std::fs::create_dir_all(folder).map_err(|error| file::FileError::Write { path: folder.to_owned(), error })?;
+    std::fs::create_dir_all(folder)
+        .map_err(|error| file::FileError::Write(WriteError { path: folder.to_owned(), error }))?;
     for (picture, extension) in [(seen, "png"), (linear, "exr")] {
         let path = folder.join(format!("{name}.{extension}"));
         file::write(picture, &path)?;

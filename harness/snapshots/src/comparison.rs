@@ -74,7 +74,7 @@ pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Resu
         let pixels: Vec<[u8; 4]> = map.iter().map(|error| opaque(lapidary_flip::magma(*error))).collect();
         let encode = |reason| file::FileError::Encode { path: beside[1].clone(), reason };
         let bytes = file::png(seen.width, seen.height, &pixels).map_err(encode)?;
-        file::replace(&beside[1], &bytes)?;
+        lapidary_files::replace(&beside[1], &bytes).map_err(file::FileError::from)?;
     }
     Ok(comparison)
 }

@@ -106,7 +106,7 @@ impl Executable {
             std::fs::read(root.join(&file)).unwrap_or_default().hash(&mut hasher);
         }
         if let Some(programs) = self.path.ancestors().nth(2) {
-            for program in ["cook", "gallery", "ladders", "xtask"] {
+            for program in ["cook", "gallery", "ladders", "take", "xtask"] {
                 std::fs::read(programs.join(program)).unwrap_or_default().hash(&mut hasher);
             }
         }

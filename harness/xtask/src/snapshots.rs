@@ -2,7 +2,7 @@
 
 use lapidary_cook::command::{Context, Failure, Outcome, output, progress};
 use lapidary_cookbook::repository;
-use lapidary_scene::nearest::suggest;
+use lapidary_files::nearest::suggest;
 use lapidary_snapshots as snapshot;
 use lapidary_snapshots::{self, Committed};
 

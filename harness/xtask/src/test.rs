@@ -195,7 +195,7 @@ fn suite(
         }
     }
     if let Some(file) = &arguments.times {
-        lapidary_render::file::replace(file, table(seconds).as_bytes())?;
+        lapidary_files::replace(file, table(seconds).as_bytes())?;
     }
     if !unchanged.is_empty() {
         eprintln!("unchanged since they passed, and not run again: {} (--again runs them)", unchanged.join(", "));

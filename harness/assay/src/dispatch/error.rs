@@ -1,6 +1,7 @@
 //! Why a kernel cannot be made or run.
 
 use super::signature::SignatureError;
+#[cfg(feature = "gpu")]
 use lapidary_gpu::GpuError;
 
 /// Reason why a function could not be made into a kernel, or could not run.
@@ -21,6 +22,7 @@ pub enum DispatchError {
     #[error(transparent)]
     Signature(#[from] SignatureError),
     /// The device refused the operation.
+    #[cfg(feature = "gpu")]
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// A runner other than a wgpu device refused the operation.

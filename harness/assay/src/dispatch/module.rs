@@ -56,8 +56,10 @@ pub struct KernelModule {
     pub signature: Signature,
     /// Functions of the source, and the entry point.
     pub module: naga::Module,
-    pub(super) input: Layout,
-    pub(super) output: Layout,
+    /// Layout of a row of arguments.
+    pub input: Layout,
+    /// Layout of a row of results.
+    pub output: Layout,
 }
 
 impl KernelModule {

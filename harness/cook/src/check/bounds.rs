@@ -2,7 +2,7 @@
 //! recurse as deeply as the text nests.
 
 use lapidary_assay::tokens::tokens;
-use lapidary_cookbook::text_file;
+use lapidary_files::text_file;
 use std::path::Path;
 
 /// Largest size of a file in bytes; all modules of the cookbook together have a fifth of it.

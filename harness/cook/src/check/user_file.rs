@@ -5,7 +5,7 @@ use super::{CheckError, bounds, select};
 use lapidary_assay::dispatch;
 use lapidary_assay::formula::Formula;
 use lapidary_cookbook::{self as cookbook, Module};
-use lapidary_scene::nearest;
+use lapidary_files::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -2,11 +2,12 @@
 
 use super::Failure;
 use super::named::named;
+use lapidary_files::nearest;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
-use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene, nearest};
+use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]

@@ -1,13 +1,10 @@
 //! `cook list`.
 
 use super::{Failure, Outcome, output};
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::signature::Signature;
-use lapidary_cookbook as cookbook;
-
 use lapidary_plan::ladder::Step;
 use lapidary_plan::{Quality, Rung, Technique};
 use lapidary_scene::{BUILT_IN, BuiltIn, PRESETS, Preset};
+use lapidary_take::list;
 use serde::Serialize;
 
 /// Lists modules and functions, signature and stated accuracy of each; or scenes, materials or rungs.
@@ -51,15 +48,6 @@ struct RungRow {
     error: Option<f64>,
     error_measure: Option<&'static str>,
     ms: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Row {
-    module: &'static str,
-    function: String,
-    signature: String,
-    accuracy: String,
-    summary: String,
 }
 
 /// Returns the rungs of each technique's ladder, in its order; those of techniques without one after them.
@@ -151,39 +139,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.rungs {
         return rungs(arguments.json);
     }
-    if arguments.markdown {
-        output::line("| module | what it computes |\n|---|---|")?;
-        for module in cookbook::modules() {
-            let purpose = module.header.purpose.trim_end_matches('.');
-            output::line(&format!("| [{0}]({0}.md) | {purpose} |", module.name))?;
-        }
-        return Ok(Outcome::Passed);
-    }
-    let mut rows = Vec::new();
-    for module in cookbook::modules() {
-        let (ir, _) = dispatch::parse(module.whole, module.name)?;
-        for function in &module.functions {
-            rows.push(Row {
-                module: module.name,
-                signature: Signature::reflect(&ir, &function.name)?.to_string(),
-                function: function.name.clone(),
-                accuracy: function.accuracy.to_string(),
-                summary: function.summary.clone(),
-            });
-        }
-    }
-    if arguments.json {
-        output::line(&serde_json::to_string_pretty(&rows)?.to_string())?;
-        return Ok(Outcome::Passed);
-    }
-    for module in cookbook::modules() {
-        output::line(&format!("{}: {}", module.name, module.header.purpose))?;
-        for row in rows.iter().filter(|row| row.module == module.name) {
-            output::line(&format!("  {}\n      {}", row.signature, row.accuracy))?;
-        }
-    }
-    for recipe in lapidary_wgsl::RECIPES {
-        output::line(&format!("recipe {}: requires {}", recipe.name, recipe.requires().join(", ")))?;
-    }
-    Ok(Outcome::Passed)
+    list::shaders(arguments.json, arguments.markdown)
 }

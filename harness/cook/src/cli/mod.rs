@@ -4,7 +4,6 @@ mod asked;
 mod check;
 mod compare;
 mod completions;
-mod copy;
 mod drawn;
 mod frame;
 mod list;
@@ -14,6 +13,7 @@ mod scene;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use lapidary_cook::command::{self, Common, Context, Failure, Outcome, browser, named, number, output, progress};
+use lapidary_take::copy;
 use std::process::ExitCode;
 
 /// A shader cookbook for gems: copy the WGSL, test its formulas, look at the pictures.

@@ -138,7 +138,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         PathBuf::from(name)
     });
     Format::of_path(&out)?;
-    file::check_writable(&out)?;
+    lapidary_files::check_writable(&out)?;
     let bar = progress::bar(0, "rendering");
     let picture = render::render_reporting(context.gpu()?, &scene, &settings, &mut |done, total| {
         bar.set_length(total);

@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     file::check_ending(&arguments.out, ".glb")?;
     let bytes = glb::write(&Scene::named(&arguments.name)?)?;
-    file::replace(&arguments.out, &bytes)?;
+    lapidary_files::replace(&arguments.out, &bytes)?;
     output::line(&arguments.out.display().to_string())?;
     Ok(Outcome::Passed)
 }

@@ -1,6 +1,6 @@
 //! Browser of a command: started at most once, and closed when the command ends.
 
-use super::failure::Failure;
+use super::Failure;
 use lapidary_browser::{Adapter, Browser};
 use std::sync::OnceLock;
 

@@ -118,6 +118,29 @@ fn what_was_measured_once_is_run_by_the_studies() {
     );
 }
 
+/// One who copies builds the small program alone; where cook is built already, that serves.
+#[test]
+fn shaders_are_taken_by_the_smallest_program() {
+    let clone = Clone::new("exit 0", "echo cook");
+    let program = |words: &str| clone.run(&words.split_whitespace().collect::<Vec<_>>()).1.trim().to_owned();
+    assert_eq!(program("copy fresnel"), "cook");
+    script(&clone.at("target/debug/take"), "echo take");
+    for (words, expected) in [
+        ("copy fresnel --to hlsl", "take"),
+        ("--adapter any copy --help", "take"),
+        ("list", "take"),
+        ("list --json", "take"),
+        ("list --materials", "cook"),
+        ("list --json --rungs", "cook"),
+        ("list --help", "cook"),
+        ("plan ruby", "cook"),
+    ] {
+        assert_eq!(program(words), expected, "{words}");
+    }
+    std::fs::remove_file(clone.at("target/debug/cook")).expect("removed");
+    assert_eq!(program("copy fresnel"), "take");
+}
+
 #[test]
 fn what_is_built_runs_where_nothing_can_be_built() {
     let cargo =

@@ -130,7 +130,7 @@ fn save(picture: &Picture, path: &Path) -> Result<(), file::FileError> {
         return file::write(picture, path);
     }
     let bytes = jpeg(picture).map_err(|reason| file::FileError::Encode { path: path.to_owned(), reason })?;
-    file::replace(path, &bytes)
+    Ok(lapidary_files::replace(path, &bytes)?)
 }
 
 fn jpeg(picture: &Picture) -> Result<Vec<u8>, String> {

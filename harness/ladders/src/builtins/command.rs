@@ -6,7 +6,6 @@ use lapidary_assay::runner::Runner;
 use lapidary_browser::Adapter;
 use lapidary_cook::check::in_browser::InBrowser;
 use lapidary_cook::command::{Context, Failure, Outcome, browser, number, output, progress};
-use lapidary_render::file;
 use std::path::PathBuf;
 
 /// Measures the accuracy of a device's built-in functions: those of one float over all floats, the
@@ -42,7 +41,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
         // Before the measurement, which takes minutes.
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure(format!("{}: cannot be made: {error}", folder.display())))?;
-        file::check_writable(&folder.join("builtins.txt"))?;
+        lapidary_files::check_writable(&folder.join("builtins.txt"))?;
     }
     let bar = progress::bar(builtins::count() as u64, "measuring");
     let tick = |name: &str| {
@@ -68,8 +67,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
     bar.finish_and_clear();
     let (text, json) = (builtins::text(&report), serde_json::to_string_pretty(&report)?);
     if let Some(folder) = &arguments.out {
-        file::replace(&folder.join("builtins.txt"), text.as_bytes())?;
-        file::replace(&folder.join("builtins.json"), format!("{json}\n").as_bytes())?;
+        lapidary_files::replace(&folder.join("builtins.txt"), text.as_bytes())?;
+        lapidary_files::replace(&folder.join("builtins.json"), format!("{json}\n").as_bytes())?;
     }
     output::bytes(if arguments.json { format!("{json}\n") } else { text }.as_bytes())?;
     Ok(Outcome::Passed)

@@ -8,7 +8,6 @@ use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::error::{GltfError, excerpt};
-use crate::not_a_file;
 
 /// Some writers pad base64 and some do not; both forms are unambiguous.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -99,7 +98,7 @@ fn read_up_to(path: &Path, what: String, limit: u64) -> Result<Vec<u8>, GltfErro
     // Checked before the file is opened, because opening a pipe waits for the other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable(not_a_file(&metadata).to_owned()));
+        return Err(unreadable(lapidary_files::not_a_file(&metadata).to_owned()));
     }
     let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
     let mut bytes = Vec::new();

@@ -1,6 +1,6 @@
 //! The ladder of solvers, by name.
 
-use crate::nearest;
+use lapidary_files::nearest;
 use std::fmt;
 use std::str::FromStr;
 

@@ -1,6 +1,6 @@
 //! Why the folder of all texts was not written.
 
-use lapidary_cookbook::folder::FolderError;
+use lapidary_files::folder::FolderError;
 use lapidary_translate::TranslateError;
 
 /// Why the folder was not written. Anything that existed at its path is unchanged.

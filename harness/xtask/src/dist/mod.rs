@@ -8,8 +8,8 @@ mod whole;
 pub use error::DistError;
 pub use whole::Whole;
 
-use lapidary_cookbook::folder::{self, FolderError, Owner};
 use lapidary_cookbook::modules;
+use lapidary_files::folder::{self, FolderError, Owner};
 use lapidary_translate::{Language, library, shader, spirv};
 use lapidary_wgsl::RECIPES;
 use naga::ShaderStage;

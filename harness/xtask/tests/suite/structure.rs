@@ -5,26 +5,44 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Other crates that each crate of the harness may need; see docs/ARCHITECTURE.md.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     ("gpu", &[]),
     ("browser", &[]),
+    ("files", &[]),
+    ("command", &["files"]),
     ("specialise", &[]),
     ("translate", &["specialise"]),
     ("assay", &["gpu", "specialise"]),
-    ("scene", &[]),
+    ("scene", &["files"]),
     ("assets", &["scene"]),
     ("reference", &["scene"]),
-    ("plan", &["scene"]),
-    ("render", &["gpu", "plan", "reference", "scene", "specialise", "wgsl"]),
+    ("plan", &["files", "scene"]),
+    ("render", &["files", "gpu", "plan", "reference", "scene", "specialise", "wgsl"]),
     ("flip", &[]),
     ("trials", &["assay", "gpu"]),
-    ("cookbook", &["assay", "scene", "translate", "wgsl"]),
+    ("cookbook", &["assay", "translate", "wgsl"]),
+    ("take", &["assay", "command", "cookbook", "files", "translate", "wgsl"]),
     ("testing", &["assay", "cookbook", "gpu", "render", "scene"]),
     (
         "cook",
-        &["assay", "browser", "cookbook", "flip", "gpu", "plan", "reference", "render", "scene", "translate", "wgsl"],
+        &[
+            "assay",
+            "browser",
+            "command",
+            "cookbook",
+            "files",
+            "flip",
+            "gpu",
+            "plan",
+            "reference",
+            "render",
+            "scene",
+            "take",
+            "translate",
+            "wgsl",
+        ],
     ),
-    ("snapshots", &["cookbook", "flip", "gpu", "plan", "reference", "render", "scene", "wgsl"]),
+    ("snapshots", &["cookbook", "files", "flip", "gpu", "plan", "reference", "render", "scene", "wgsl"]),
     (
         "ladders",
         &[
@@ -32,6 +50,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "browser",
             "cook",
             "cookbook",
+            "files",
             "gpu",
             "plan",
             "reference",
@@ -48,6 +67,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "assay",
             "cook",
             "cookbook",
+            "files",
             "gpu",
             "ladders",
             "plan",
@@ -65,6 +85,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "assay",
             "cook",
             "cookbook",
+            "files",
             "gpu",
             "plan",
             "render",
@@ -118,7 +139,7 @@ fn arrows_between_crates_run_one_way() {
             assert!(allowed.contains(&other.as_str()), "{name} needs {other}");
         }
         // Libraries for general use must not depend on the cookbook.
-        if ["gpu", "browser", "specialise", "translate", "assay"].contains(&name) {
+        if ["gpu", "browser", "files", "command", "specialise", "translate", "assay"].contains(&name) {
             assert!(needed.keys().all(|other| !modules.contains(other)), "{name}");
         }
     }
@@ -233,6 +254,17 @@ fn the_tool_stays_small() {
     needed.retain(|name| !name.starts_with("lapidary-"));
     assert!(needed.len() <= 135, "{} packages: {needed:?}", needed.len());
     assert!(!needed.iter().any(|name| COMPILERS.iter().any(|one| name.starts_with(one))), "{needed:?}");
+}
+
+/// One who copies a shader builds no device, no picture and no scene.
+#[test]
+fn what_copies_stays_smaller() {
+    let needed = packages("lapidary-take", &[], "normal,build");
+    let others = needed.iter().filter(|name| !name.starts_with("lapidary-"));
+    assert!(others.clone().count() <= 60, "{needed:?}");
+    for refused in ["wgpu", "image", "exr", "gltf", "lapidary-scene", "lapidary-gpu"] {
+        assert!(!needed.iter().any(|name| name.starts_with(refused)), "{refused}: {needed:?}");
+    }
 }
 
 /// Returns the texts of a folder's Rust sources, without test files.

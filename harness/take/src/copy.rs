@@ -1,11 +1,10 @@
 //! `cook copy`.
 
-use super::{Failure, Outcome, output};
 use lapidary_assay::dispatch::{self, KernelModule};
+use lapidary_command::{Failure, Outcome, output};
 use lapidary_cookbook::marks::{self, effects};
 use lapidary_cookbook::{self as cookbook, Module};
-use lapidary_render::file;
-use lapidary_scene::nearest;
+use lapidary_files::nearest;
 use lapidary_translate::declarations::{declarations, functions, of_functions};
 use lapidary_translate::fitted::{in_group, with_constants, with_private};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
@@ -17,7 +16,7 @@ use std::path::PathBuf;
 #[command(
     after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy fresnel --to glsl-es --out fresnel.glsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy gem_walk::gem_radiance --effects convex_trace --set BOUNCES=8 --private view --group 3\n  ./cook copy refraction::refract --to spirv --out refract.spv"
 )]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Modules, or one recipe. MODULE::FUNCTION is one function with what it needs, and so is
     /// RECIPE::FUNCTION, where an entry point is a function too. In SPIR-V a module's function is
     /// wrapped in a compute kernel. A recipe's GLSL holds one entry point.
@@ -88,7 +87,11 @@ enum Selection {
     Recipe(Wanted<Recipe>),
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+/// Runs the command.
+///
+/// # Errors
+/// Returns one line for the user: what is wrong, where, and what to do.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let bytes = match select(&arguments.names)? {
         Selection::Modules(modules) => {
             let for_recipes = [
@@ -108,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     match &arguments.out {
         Some(path) => {
-            file::replace(path, &bytes)?;
+            lapidary_files::replace(path, &bytes)?;
             output::line(&path.display().to_string())?;
         }
         None => output::bytes(&bytes)?,

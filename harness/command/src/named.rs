@@ -1,6 +1,6 @@
 //! Values that an option takes by name.
 
-use lapidary_scene::nearest::suggest;
+use lapidary_files::nearest::suggest;
 
 /// Returns the value of this name, or a message that says what there is; `what` is what the values are.
 pub fn named<T: Copy>(

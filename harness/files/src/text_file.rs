@@ -11,7 +11,7 @@ pub fn read(path: &Path, most_bytes: u64) -> Result<String, String> {
     // waits for its other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(&error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable(lapidary_scene::not_a_file(&metadata)));
+        return Err(unreadable(crate::not_a_file(&metadata)));
     }
     let mut bytes = Vec::new();
     // The reported size may be wrong: the file may grow, or be generated while it is read, as below
