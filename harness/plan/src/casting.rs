@@ -1,5 +1,6 @@
 //! Which body may cast a shadow on which, by their bounds and the lights.
 
+use crate::remembered::Remembered;
 use lapidary_scene::mesh_diagnosis::shades_itself;
 use lapidary_scene::{Bounds, Light, Object, Scene};
 
@@ -58,7 +59,8 @@ pub fn bounds(body: &Object) -> Bounds {
 #[must_use]
 pub fn casts(caster: (&Object, Bounds), receiver: (&Object, Bounds), lights: &[Light]) -> bool {
     if std::ptr::eq(caster.0, receiver.0) {
-        return !lights.is_empty() && shades_itself(&caster.0.mesh);
+        static SHADES_ITSELF: Remembered<bool> = Remembered::new();
+        return !lights.is_empty() && SHADES_ITSELF.of(&caster.0.mesh, shades_itself);
     }
     may_cast(caster.1, receiver.1, lights)
 }

@@ -28,6 +28,7 @@ mod notes;
 mod numbers;
 mod outside;
 pub mod quality;
+mod remembered;
 mod request;
 mod rung;
 pub mod thickness;

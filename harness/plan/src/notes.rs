@@ -1,6 +1,7 @@
 //! Warnings before a scene is drawn: bodies and lights that no technique can render faithfully.
 
 use super::{Decisions, thickness};
+use crate::remembered::Remembered;
 use crate::{Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
@@ -140,7 +141,8 @@ impl Case<'_> {
             Rung::Reference => material.is_clear(),
             _ => false,
         };
-        let found = MeshDiagnosis::of(mesh);
+        static FOUND: Remembered<MeshDiagnosis> = Remembered::new();
+        let found = FOUND.of(mesh, MeshDiagnosis::of);
         if takes_a_solid {
             let faults = found.clauses();
             return (!faults.is_empty()).then(|| Note::NotSolid { objects: objects.clone(), rung: self.rung, faults });

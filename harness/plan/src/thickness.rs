@@ -1,5 +1,6 @@
 //! The thickness of a body, and the technique that follows from it for a scattering body.
 
+use crate::remembered::Remembered;
 use glam::Vec3;
 use lapidary_bvh_trace::traversal;
 use lapidary_scene::{Bvh, Material, Medium, Mesh, Object};
@@ -62,6 +63,11 @@ fn mean_free_path(medium: &Medium) -> f32 {
 /// shows through them.
 #[must_use]
 pub fn measured(mesh: &Mesh) -> f32 {
+    static MEASURED: Remembered<f32> = Remembered::new();
+    MEASURED.of(mesh, measured_anew)
+}
+
+fn measured_anew(mesh: &Mesh) -> f32 {
     let bvh = Bvh::build(&mesh.positions, &mesh.indices);
     let triangles: Vec<[Vec3; 3]> =
         bvh.indices.chunks_exact(3).map(|corners| corner_positions(mesh, corners)).collect();

@@ -21,9 +21,15 @@ fn described(row: &Row) -> String {
     )
 }
 
+/// Random inputs of a function: the interpreter takes as long for a quarter as a device for all. `.ci/full` runs more,
+/// from more seeds.
+fn cases() -> u64 {
+    if lapidary_testing::whole() { DEFAULT_CASES } else { DEFAULT_CASES / 4 }
+}
+
 #[test]
 fn every_function_holds_on_every_device_that_wgsl_allows() {
-    let settings = Settings { cases: DEFAULT_CASES, seed: lapidary_testing::seed() };
+    let settings = Settings { cases: cases(), seed: lapidary_testing::seed() };
     let mut faults = Vec::new();
     for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
         let row = examined(formula.function, Source::Cookbook, settings);
@@ -47,7 +53,7 @@ fn what_reassociation_breaks_is_named() {
         let settings = if named {
             Settings { cases: 4 * DEFAULT_CASES, ..Settings::default() }
         } else {
-            Settings { cases: DEFAULT_CASES / 4, seed: lapidary_testing::seed() }
+            Settings { cases: cases() / 4, seed: lapidary_testing::seed() }
         };
         let on = On::Slack(Reassociation::Reordered);
         let row = check::run(on, formula, Source::Cookbook, settings).expect("the interpreter runs it");

@@ -5,6 +5,8 @@ use lapidary_gpu::GpuError;
 use lapidary_specialise::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
 use lapidary_specialise::{SourceError, SpecialiseError, declared, parse, specialise};
 use naga::valid::ModuleInfo;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// Why a recipe was not compiled.
 #[derive(Debug, thiserror::Error)]
@@ -30,11 +32,24 @@ pub struct Shader {
     info: ModuleInfo,
 }
 
+/// Texts that this process has parsed: scenes take many variants of few recipes, and parsing takes as long as the rest.
+static PARSED: Mutex<BTreeMap<String, naga::Module>> = Mutex::new(BTreeMap::new());
+
+fn parsed(recipe: &str, source: &str) -> Result<naga::Module, SourceError> {
+    let mut known = PARSED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(module) = known.get(source) {
+        return Ok(module.clone());
+    }
+    let (module, _) = parse(source, &format!("recipe {recipe}"))?;
+    known.insert(source.to_owned(), module.clone());
+    Ok(module)
+}
+
 impl Shader {
     /// Specialises the `entries` of `source`, the composed text of `recipe`, to override values:
     /// bools are 0 or 1, and values that the text does not declare are left out.
     pub fn new(recipe: &str, source: &str, entries: &[&str], constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
-        let (module, _) = parse(source, &format!("recipe {recipe}"))?;
+        let module = parsed(recipe, source)?;
         let declared = declared(&module, constants);
         let (module, info) = specialise(module, &declared, entries).map_err(|error| match error {
             SpecialiseError::NoEntryPoint { .. } => {

@@ -36,7 +36,7 @@ fn copy_of(folder: &Path) -> tempfile::TempDir {
 /// picture below.
 #[test]
 fn pictures_are_as_they_were() {
-    for committed in lapidary_testing::sampled(Committed::all(), ONE_IN) {
+    for committed in lapidary_testing::sampled(Committed::all(), 2 * ONE_IN) {
         let name = committed.name();
         let pictures = committed.render(lapidary_testing::gpu()).expect("rendered");
         let comparison = snapshot::compare(name, &pictures, &committed.folder()).expect(name);

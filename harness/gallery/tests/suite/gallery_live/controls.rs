@@ -181,6 +181,9 @@ fn a_link_says_what_it_asks_for() {
 /// What appears by a choice or a press takes no other control's place, and a wipe says why it does nothing.
 #[test]
 fn no_control_slides_under_a_pointer() {
+    if !super::runs_whole("no_control_slides_under_a_pointer") {
+        return;
+    }
     let Some(mut page) = running("brilliant", "") else { return };
     page.grant_clipboard().expect("granted");
     // Within the controls: the window may scroll.
