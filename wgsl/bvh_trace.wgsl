@@ -22,8 +22,8 @@
 // The two factors of the margin: 2^-18 of the mesh's largest distance from the origin along an
 // axis, and 2^-21 of the origin's largest coordinate. With e = 2^-23, the relative error of + - *
 // in WGSL: a sheared coordinate is off by 7.5 e (offset, depth and difference 2 e + 2 e, division
-// 2.5 e, product e), an edge function divided by its edge by another 6 e, the planes of a box by
-// 9 e; an origin on the surface is a computed position and off by 5 e. The worst sum,
+// 2.5 e, product e). An edge function divided by its edge is off by another 6 e, the planes of a box
+// by 9 e. An origin on the surface is a computed position and off by 5 e. The worst sum,
 // 7.5 + 6 + 1.7 * 5 = 22 e, is below the 32 e of the first factor. The second factor covers the
 // last place of the origin, e / 2 to e, in coordinates that may be 1.7 times as large.
 const BVH_TRACE_MARGIN_REACH = 3.814697265625e-6f;
@@ -258,9 +258,8 @@ fn bvh_trace_triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas spanned by the origin and the edges opposite a, b, c, each computed from the
-    // nearer end of its edge, because the error of an area is the distance of that end times the
-    // edge. If the direction's largest component is negative, the frame is seen against the ray,
+    // Twice the areas spanned by the origin and the edges opposite a, b, c. Each is computed from the
+    // nearer end of its edge: the error of an area is the distance of that end times the edge. If the direction's largest component is negative, the frame is seen against the ray,
     // and the sign changes.
     let squared = vec3f(dot(p.xy, p.xy), dot(q.xy, q.xy), dot(r.xy, r.xy));
     let on_qr = select(q.xy, r.xy, squared.z < squared.y);

@@ -10,8 +10,8 @@
 //   limiter. The local part is derived in docs/diffusion.md.
 //
 // Lengths on the grid are in spacings. The equation of node i, times 3 sigma, is
-//   sum of G (phi_j - phi_i) - (S / (rho t + z) + (kappa h)^2 rho V) phi_i + 3 sigma load = 0
-// with G by diffusion_face, S / (rho t + z) by diffusion_surface, and kappa = sqrt(3) gamma sigma.
+//   sum of G (phi_j - phi_i) - (S / (rho t + z) + (kappa h)^2 rho V) phi_i + 3 sigma load = 0.
+// Here G is by diffusion_face, S / (rho t + z) by diffusion_surface, and kappa = sqrt(3) gamma sigma.
 // All functions take gamma = sqrt(1 - albedo), as half_space does, and H and the law as its functions return
 // them.
 
@@ -53,8 +53,8 @@ const DIFFUSION_STEEP: f32 = 2.0f;
 const DIFFUSION_FARTHEST: f32 = 1e15f;
 
 // Extrapolation length at a dielectric boundary. By diffusion's boundary condition it grows in proportion
-// to (1 + R_J) / (1 - R_phi), in which R_phi and R_J are the means of Fresnel's reflectance from inside,
-// weighted with 2 m and 3 m^2. The proportion starts at Milne's length instead of diffusion's own 2/3. R_J
+// to (1 + R_J) / (1 - R_phi). R_phi and R_J are the means of Fresnel's reflectance from inside, weighted
+// with 2 m and 3 m^2. The proportion starts at Milne's length instead of diffusion's own 2/3. R_J
 // grows like (n - 1)^(3/2), so that the fit is a polynomial of the root.
 // Returns: length from 0.7104 for an index of 1 to 10.4 for 2.5; the fit is accurate to 1.4e-5.
 // Units: mean free paths; `relative_index` is n_inside / n_outside.

@@ -7,8 +7,8 @@
 //
 // Angles are measured in turns (1 turn = 2 pi), because a texture coordinate is already one:
 // quarter turns are then exact, and u and v stay inside [0, 1] without a clamp. The module has its
-// own arctangent and sine, because WGSL allows atan2 an error of 4096 ulp (2.4e-4 in u, one texel
-// of a 4096 map) and sine an error of 2^-11 (a "unit" vector that is off by 5e-4).
+// own arctangent and sine. WGSL allows atan2 an error of 4096 ulp (2.4e-4 in u, one texel of a 4096
+// map), and sine an error of 2^-11 (a "unit" vector that is off by 5e-4).
 
 // Angle of the point (x, y) in turns, counterclockwise from +x: the arctangent of a ratio in [0, 1] by a
 // polynomial in odd powers, extended to all octants.

@@ -6,8 +6,8 @@
 // parts: mesh
 //
 // Draw 3 vertices per triangle of each closed stone, without culling or depth test, into one layer of
-// an rgba16float texture cleared to (0, 0, 0, 1), with the blend operation add for the colour and min
-// for alpha, all factors 1. Light goes straight on: it is not refracted, and nothing gathers it.
+// an rgba16float texture cleared to (0, 0, 0, 1). The blend operation is add for the colour and min for
+// alpha, all factors 1. Light goes straight on: it is not refracted, and nothing gathers it.
 
 struct ColoredShadowStone {
     // Absorption coefficient in each channel, per unit of length.

@@ -5,9 +5,9 @@
 // requires: diffusion, fresnel, half_space, reflective_shadow_map, voxelization
 // parts: lights, light_views, diffusion_nodes, tiles
 //
-// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map, for lamps
-// inside diffusion_source_lamp with 2 cells^2 invocations for each light, and diffusion_source_finish with a
-// workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
+// Clear `loads`, then dispatch diffusion_source_texel with an invocation for each texel of each map. For lamps
+// inside, dispatch diffusion_source_lamp with 2 cells^2 invocations for each light. Then dispatch
+// diffusion_source_finish with a workgroup for each of the `tiles`, as the recipe diffusion_cells lists them.
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.

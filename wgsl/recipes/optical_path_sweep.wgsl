@@ -7,10 +7,10 @@
 // compares: optical_path
 //
 // 1. Dispatch `optical_path_sweep_begin`.
-// 2. For each pass of the budget, dispatch `optical_path_sweep_next` with one workgroup, then, with
-//    the indirect arguments that it has written, either
+// 2. For each pass of the budget, dispatch `optical_path_sweep_next` with one workgroup, then one of
+//    these with the indirect arguments that it has written.
 //    - `optical_path_sweep_pull`, with `costs` and `work` exchanged in every second pass, for an
-//      even number of passes: every voxel takes the least that its neighbours offer; or
+//      even number of passes: every voxel takes the least that its neighbours offer.
 //    - `optical_path_sweep_push`, the paper's method: every voxel that was written in the last pass
 //      offers its value to its six neighbours.
 //    After the first pass that changes nothing, the remaining passes have no workgroups.

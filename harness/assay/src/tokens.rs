@@ -1,4 +1,4 @@
-//! WGSL as tokens, without comments and white space, and so independent of the layout of the text.
+//! WGSL as tokens: with comments and white space, or without, and so independent of the layout of the text.
 //! For questions that arise before naga may see a text, or for which naga keeps no names.
 
 /// A token and its position.
@@ -10,25 +10,55 @@ pub struct Token<'a> {
     pub line: u32,
 }
 
+/// What a stretch of text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// White space.
+    Space,
+    /// A comment, to the end of the line or of the outermost block.
+    Comment,
+    /// A number with exponent and suffix: `0x1.8p-3f`, `1e-6f`, `12u`.
+    Number,
+    /// An identifier or keyword.
+    Word,
+    /// A character of punctuation.
+    Punctuation,
+}
+
+/// Returns the length in bytes, at least 1, and the kind of what a text, which is not empty, begins with. The text need
+/// not be valid; Rust's is read by the same rules.
+pub fn first(text: &str) -> (usize, Kind) {
+    let mut characters = text.chars();
+    let first = characters.next().unwrap_or_default();
+    let is_followed_by = |accept: fn(&char) -> bool| characters.clone().next().as_ref().is_some_and(accept);
+    let run = |accept: fn(char) -> bool| text.find(|c: char| !accept(c)).unwrap_or(text.len());
+    match first {
+        '/' if is_followed_by(|next| *next == '/') => (text.find('\n').unwrap_or(text.len()), Kind::Comment),
+        '/' if is_followed_by(|next| *next == '*') => (block_comment(text), Kind::Comment),
+        '0'..='9' => (number(text), Kind::Number),
+        '.' if is_followed_by(char::is_ascii_digit) => (number(text), Kind::Number),
+        _ if first.is_whitespace() => (run(char::is_whitespace), Kind::Space),
+        _ if is_word(first) => (run(is_word), Kind::Word),
+        _ => (first.len_utf8(), Kind::Punctuation),
+    }
+}
+
+fn is_word(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
 /// Splits a source into tokens; it need not be valid.
 pub fn tokens(source: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let mut line = 1;
     let mut rest = source;
-    while let Some(first) = rest.chars().next() {
-        let length = if first.is_whitespace() {
-            first.len_utf8()
-        } else if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            block_comment(rest)
-        } else {
-            let length = token_length(rest, first);
-            tokens.push(Token { text: &rest[..length], line });
-            length
-        };
-        let (passed, left) = rest.split_at(length);
-        line += passed.bytes().filter(|byte| *byte == b'\n').count() as u32;
+    while !rest.is_empty() {
+        let (length, kind) = first(rest);
+        let (text, left) = rest.split_at(length);
+        if !matches!(kind, Kind::Space | Kind::Comment) {
+            tokens.push(Token { text, line });
+        }
+        line += text.bytes().filter(|byte| *byte == b'\n').count() as u32;
         rest = left;
     }
     tokens
@@ -57,23 +87,16 @@ fn block_comment(text: &str) -> usize {
     bytes.len()
 }
 
-fn token_length(text: &str, first: char) -> usize {
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    if first.is_ascii_digit() || (first == '.' && text[1..].starts_with(|c: char| c.is_ascii_digit())) {
-        // The sign of an exponent belongs to the number.
-        let exponent: &[u8] = if text.starts_with("0x") || text.starts_with("0X") { b"pP" } else { b"eE" };
-        let bytes = text.as_bytes();
-        let belongs = |at: usize| {
-            bytes[at].is_ascii_alphanumeric()
-                || bytes[at] == b'.'
-                || (matches!(bytes[at], b'+' | b'-') && exponent.contains(&bytes[at - 1]))
-        };
-        return 1 + (1..bytes.len()).take_while(|at| belongs(*at)).count();
-    }
-    if word(first) {
-        return text.find(|c: char| !word(c)).unwrap_or(text.len());
-    }
-    first.len_utf8()
+/// Returns the length of the number at the start; the sign of an exponent belongs to it.
+fn number(text: &str) -> usize {
+    let exponent: &[u8] = if text.starts_with("0x") || text.starts_with("0X") { b"pP" } else { b"eE" };
+    let bytes = text.as_bytes();
+    let belongs = |at: usize| {
+        bytes[at].is_ascii_alphanumeric()
+            || bytes[at] == b'.'
+            || (matches!(bytes[at], b'+' | b'-') && exponent.contains(&bytes[at - 1]))
+    };
+    1 + (1..bytes.len()).take_while(|at| belongs(*at)).count()
 }
 
 /// A declaration at module scope.

@@ -2,6 +2,7 @@
 //! numbers, attributes and declared names. The pieces' texts in a row are the source, as the copy button
 //! requires.
 
+use lapidary_assay::tokens::{self, Kind};
 use serde::Serialize;
 
 /// The language of a source.
@@ -97,58 +98,18 @@ pub fn pieces(source: &str, language: Language) -> Vec<Piece<'_>> {
 /// Returns the length in bytes of the first token of a non-empty text, at least 1, and its class;
 /// `i` marks a word that is still to be classified.
 fn token(text: &str) -> (usize, Option<char>) {
-    let run = |accept: fn(char) -> bool| text.find(|c: char| !accept(c)).unwrap_or(text.len());
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    let mut characters = text.chars();
-    let first = characters.next().unwrap_or_default();
-    let second = characters.next().unwrap_or_default();
-    match first {
-        '/' if second == '/' => (text.find('\n').unwrap_or(text.len()), Some('c')),
-        '/' if second == '*' => (block_comment(text), Some('c')),
-        '0'..='9' => (number(text), Some('n')),
-        '.' if second.is_ascii_digit() => (number(text), Some('n')),
-        '@' => (1 + text[1..].find(|c: char| !word(c)).unwrap_or(text.len() - 1), Some('a')),
-        _ if first.is_alphabetic() || first == '_' => (text.find(|c: char| !word(c)).unwrap_or(text.len()), Some('i')),
-        _ if first.is_whitespace() => (run(char::is_whitespace), None),
-        _ => (first.len_utf8(), None),
+    if let Some(rest) = text.strip_prefix('@') {
+        let name = Some(rest).filter(|rest| !rest.is_empty()).map(tokens::first);
+        return (1 + name.filter(|(_, kind)| *kind == Kind::Word).map_or(0, |(length, _)| length), Some('a'));
     }
-}
-
-/// Returns the length of a block comment; WGSL nests them. An unclosed one extends to the end.
-fn block_comment(text: &str) -> usize {
-    let mut depth = 0_usize;
-    let mut at = 0;
-    while let Some(step) = text[at..].find(['/', '*']) {
-        at += step;
-        if text[at..].starts_with("/*") {
-            depth += 1;
-            at += 2;
-        } else if text[at..].starts_with("*/") {
-            depth -= 1;
-            at += 2;
-            if depth == 0 {
-                return at;
-            }
-        } else {
-            at += 1;
-        }
-    }
-    text.len()
-}
-
-/// Returns the length of a numeric literal with exponent and suffix: `0x1.8p-3f`, `1e-6f`, `12u`.
-fn number(text: &str) -> usize {
-    let exponent: &[u8] = if text.starts_with("0x") || text.starts_with("0X") { b"pP" } else { b"eE" };
-    let bytes = text.as_bytes();
-    let mut at = 1;
-    while at < bytes.len()
-        && (bytes[at].is_ascii_alphanumeric()
-            || bytes[at] == b'.'
-            || (matches!(bytes[at], b'+' | b'-') && exponent.contains(&bytes[at - 1])))
-    {
-        at += 1;
-    }
-    at
+    let (length, kind) = tokens::first(text);
+    let class = match kind {
+        Kind::Comment => Some('c'),
+        Kind::Number => Some('n'),
+        Kind::Word => Some('i'),
+        Kind::Space | Kind::Punctuation => None,
+    };
+    (length, class)
 }
 
 fn word_class(word: &str, language: Language) -> Option<char> {

@@ -31,44 +31,34 @@ pub struct EnvironmentMap {
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// Why an environment map cannot be loaded. Each message is one line that says where, what, and
-/// what to do.
+/// Why an environment map cannot be loaded, in one line that says where, what, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum EnvironmentMapError {
-    /// The file cannot be read.
-    #[error("{}: cannot be read: {reason}; give a .hdr or .exr file", path.display())]
-    Unreadable {
-        /// Path of the file.
-        path: PathBuf,
-        /// The operating system's reason.
-        reason: String,
-    },
+#[error("{}: {problem}", path.display())]
+pub struct EnvironmentMapError {
+    /// Path of the file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub problem: MapProblem,
+}
+
+/// What is wrong with the file of an environment map.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MapProblem {
+    /// The file cannot be read, for the operating system's reason.
+    #[error("cannot be read: {0}; give a .hdr or .exr file")]
+    Unreadable(String),
     /// Another kind of file.
     #[error(
-        "{}: this is not a Radiance .hdr or OpenEXR .exr image; \
-         an environment needs one, since other formats do not hold radiance",
-        path.display()
+        "this is not a Radiance .hdr or OpenEXR .exr image; an environment needs one, since other formats do not hold \
+         radiance"
     )]
-    Format {
-        /// Path of the file.
-        path: PathBuf,
-    },
-    /// The file is damaged, or an unsupported kind of .hdr or .exr.
-    #[error(
-        "{}: cannot be decoded: {reason}; save it again as uncompressed or ZIP-compressed RGB",
-        path.display()
-    )]
-    Decode {
-        /// Path of the file.
-        path: PathBuf,
-        /// The decoder's reason.
-        reason: String,
-    },
+    Format,
+    /// The file is damaged, or an unsupported kind of .hdr or .exr, for the decoder's reason.
+    #[error("cannot be decoded: {0}; save it again as uncompressed or ZIP-compressed RGB")]
+    Decode(String),
     /// Too small, too large, or larger than its file can hold.
-    #[error("{}: it states {width} x {height} pixels, but {rule}", path.display())]
+    #[error("it states {width} x {height} pixels, but {rule}")]
     Size {
-        /// Path of the file.
-        path: PathBuf,
         /// Stated width in pixels.
         width: u32,
         /// Stated height in pixels.
@@ -78,13 +68,10 @@ pub enum EnvironmentMapError {
     },
     /// A pixel that is not radiance.
     #[error(
-        "{}: the pixel in column {column}, row {row} (from 0, top left) is {value:?}, but radiance must be \
-         finite; repair the pixel",
-        path.display()
+        "the pixel in column {column}, row {row} (from 0, top left) is {value:?}, but radiance must be finite; repair \
+         the pixel"
     )]
     Pixel {
-        /// Path of the file.
-        path: PathBuf,
         /// Column of the pixel, from the left.
         column: u32,
         /// Row of the pixel, from the top.
@@ -92,6 +79,12 @@ pub enum EnvironmentMapError {
         /// Red, green and blue.
         value: [f32; 3],
     },
+}
+
+impl From<image::ImageError> for MapProblem {
+    fn from(error: image::ImageError) -> Self {
+        Self::Decode(error.to_string().replace(char::is_control, " "))
+    }
 }
 
 /// Statistics of pixels with a negative component, as lossy compression leaves next to bright ones.
@@ -121,23 +114,20 @@ impl EnvironmentMap {
     /// # Errors
     /// As [`EnvironmentMap::load`].
     pub fn load_counting(path: &Path) -> Result<(Self, Clamped), EnvironmentMapError> {
-        Self::decode(&read(path)?, path)
+        let in_file = |problem| EnvironmentMapError { path: path.to_owned(), problem };
+        read(path).and_then(|bytes| Self::decode(&bytes)).map_err(in_file)
     }
 
-    fn decode(bytes: &[u8], path: &Path) -> Result<(Self, Clamped), EnvironmentMapError> {
-        let undecodable = |error: image::ImageError| EnvironmentMapError::Decode {
-            path: path.to_owned(),
-            reason: error.to_string().replace(char::is_control, " "),
-        };
+    fn decode(bytes: &[u8]) -> Result<(Self, Clamped), MapProblem> {
         let image = if bytes.starts_with(RADIANCE) {
-            radiance(bytes, path)?
+            radiance(bytes)?
         } else {
             let is_exr = image::guess_format(bytes).is_ok_and(|format| format == ImageFormat::OpenExr);
             if !is_exr {
-                return Err(EnvironmentMapError::Format { path: path.to_owned() });
+                return Err(MapProblem::Format);
             }
             let reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::OpenExr);
-            decoded(reader.into_decoder().map_err(undecodable)?, bytes.len(), path)?
+            decoded(reader.into_decoder()?, bytes.len())?
         };
         let (width, height) = (image.width(), image.height());
         let mut pixels: Vec<[f32; 4]> = image.into_rgba32f().pixels().map(|p| p.0).collect();
@@ -147,12 +137,7 @@ impl EnvironmentMap {
             let value = [red, green, blue];
             if !value.iter().all(|part| part.is_finite()) {
                 let place = place as u32;
-                return Err(EnvironmentMapError::Pixel {
-                    path: path.to_owned(),
-                    column: place % width,
-                    row: place / width,
-                    value,
-                });
+                return Err(MapProblem::Pixel { column: place % width, row: place / width, value });
             }
             let least = red.min(green).min(blue);
             if least < 0.0 {
@@ -169,23 +154,21 @@ impl EnvironmentMap {
 const RADIANCE: &[u8] = b"#?";
 
 /// Decodes a Radiance picture to radiance.
-fn radiance(bytes: &[u8], path: &Path) -> Result<DynamicImage, EnvironmentMapError> {
-    let undecodable = |reason: String| EnvironmentMapError::Decode { path: path.to_owned(), reason };
+fn radiance(bytes: &[u8]) -> Result<DynamicImage, MapProblem> {
     let first = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len());
     // The decoder knows only one program's name.
     let renamed = (&b"#?RADIANCE"[..]).chain(&bytes[first..]);
-    let decoder =
-        HdrDecoder::new(renamed).map_err(|error| undecodable(error.to_string().replace(char::is_control, " ")))?;
+    let decoder = HdrDecoder::new(renamed)?;
     let header = decoder.metadata();
     let (red, green, blue) = header.color_correction.unwrap_or((1.0, 1.0, 1.0));
     let exposure = header.exposure.unwrap_or(1.0);
     let divisors = [red, green, blue].map(|correction| exposure * correction);
     if !divisors.iter().all(|divisor| divisor.is_normal() && *divisor > 0.0) {
-        return Err(undecodable(format!(
+        return Err(MapProblem::Decode(format!(
             "its exposures and colour corrections multiply to {divisors:?}, but must be finite and above 0"
         )));
     }
-    let mut image = decoded(decoder, bytes.len(), path)?.into_rgb32f();
+    let mut image = decoded(decoder, bytes.len())?.into_rgb32f();
     if divisors != [1.0; 3] {
         for pixel in image.pixels_mut() {
             pixel.0.iter_mut().zip(divisors).for_each(|(part, divisor)| *part /= divisor);
@@ -195,26 +178,18 @@ fn radiance(bytes: &[u8], path: &Path) -> Result<DynamicImage, EnvironmentMapErr
 }
 
 /// Decodes the whole picture, within the limits for a file of `file_bytes` bytes.
-fn decoded(
-    mut decoder: impl ImageDecoder,
-    file_bytes: usize,
-    path: &Path,
-) -> Result<DynamicImage, EnvironmentMapError> {
-    let undecodable = |error: image::ImageError| EnvironmentMapError::Decode {
-        path: path.to_owned(),
-        reason: error.to_string().replace(char::is_control, " "),
-    };
+fn decoded(mut decoder: impl ImageDecoder, file_bytes: usize) -> Result<DynamicImage, MapProblem> {
     let (width, height) = decoder.dimensions();
-    check_size(width, height, file_bytes as u64, path)?;
+    check_size(width, height, file_bytes as u64)?;
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(MAX_WIDTH);
     limits.max_image_height = Some(MAX_HEIGHT);
-    decoder.set_limits(limits).map_err(undecodable)?;
-    DynamicImage::from_decoder(decoder).map_err(undecodable)
+    decoder.set_limits(limits)?;
+    Ok(DynamicImage::from_decoder(decoder)?)
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {
-    let unreadable = |reason: String| EnvironmentMapError::Unreadable { path: path.to_owned(), reason };
+fn read(path: &Path) -> Result<Vec<u8>, MapProblem> {
+    let unreadable = MapProblem::Unreadable;
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
         return Err(unreadable(lapidary_files::not_a_file(&metadata).to_owned()));
@@ -226,7 +201,7 @@ fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {
     std::fs::read(path).map_err(|error| unreadable(error.to_string()))
 }
 
-fn check_size(width: u32, height: u32, file_bytes: u64, path: &Path) -> Result<(), EnvironmentMapError> {
+fn check_size(width: u32, height: u32, file_bytes: u64) -> Result<(), MapProblem> {
     let pixels = u64::from(width) * u64::from(height);
     let rule = if width < 2 || height < 2 {
         "it must have at least 2 x 2; give a latitude-longitude map".to_owned()
@@ -237,7 +212,7 @@ fn check_size(width: u32, height: u32, file_bytes: u64, path: &Path) -> Result<(
     } else {
         return Ok(());
     };
-    Err(EnvironmentMapError::Size { path: path.to_owned(), width, height, rule })
+    Err(MapProblem::Size { width, height, rule })
 }
 
 #[cfg(test)]

@@ -39,7 +39,9 @@ pub(crate) fn built(root: &Path, targets: &[&str]) -> Result<Vec<Executable>, Fa
     if !child.wait().map_err(failed)?.success() {
         return Err(Failure("the tests do not build; cargo's messages are above".to_owned()));
     }
-    found.sort_by(|one: &Executable, other| one.name.cmp(&other.name));
+    // The largest run longest: begun last, they would run alone in the end.
+    let size = |program: &Executable| std::fs::metadata(&program.path).map_or(0, |data| data.len());
+    found.sort_by_key(|program| (std::cmp::Reverse(size(program)), program.name.clone()));
     Ok(found)
 }
 
@@ -68,23 +70,30 @@ pub(crate) struct Ran {
 }
 
 impl Executable {
-    /// Runs the tests, and shows what the program prints.
+    /// Runs the tests, and shows what the program prints, all at once when it has ended: other programs run meanwhile.
     pub(crate) fn run(&self, arguments: &[&str], environment: &[(&str, String)]) -> Result<Ran, Failure> {
         let mut command = Command::new(&self.path);
         command.current_dir(&self.folder).args(arguments).envs(environment.iter().map(|(name, value)| (name, value)));
         // libtest tells a test's time to those who may use what is unstable.
         command.args(["-Z", "unstable-options", "--report-time"]).env("RUSTC_BOOTSTRAP", "1");
-        command.env("CARGO", cargo()).stdout(Stdio::piped());
+        // Its errors stand between its lines, as they would on a terminal.
+        let (reader, writer) = std::io::pipe()?;
+        command.env("CARGO", cargo()).stdout(writer.try_clone()?).stderr(writer);
         let failed = |error: std::io::Error| Failure(format!("{}: cannot be run: {error}", self.path.display()));
         let mut child = command.spawn().map_err(failed)?;
+        // What it holds of the pipe would keep the reader waiting.
+        drop(command);
+        let mut said = format!("{}:\n", self.name).into_bytes();
         let mut seconds = BTreeMap::new();
-        let mut stdout = std::io::stdout().lock();
-        for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
+        for line in BufReader::new(reader).split(b'\n') {
             let line = line.map_err(failed)?;
             seconds.extend(timed(&String::from_utf8_lossy(&line)));
-            let _ = stdout.write_all(&line).and_then(|()| stdout.write_all(b"\n"));
+            said.extend(line);
+            said.push(b'\n');
         }
-        Ok(Ran { passed: child.wait().map_err(failed)?.success(), seconds })
+        let passed = child.wait().map_err(failed)?.success();
+        let _ = std::io::stdout().lock().write_all(&said);
+        Ok(Ran { passed, seconds })
     }
 
     /// Runs a program that has a `main` of its own.

@@ -8,6 +8,7 @@ use lapidary_gpu::ADAPTER_VARIABLE;
 use lapidary_testing::WHOLE_VARIABLE;
 use lapidary_testing::seed::{SEED_VARIABLE, SuiteSeed};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
 #[derive(clap::Args)]
@@ -163,8 +164,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
     Ok(outcome)
 }
 
-/// Runs the test programs one after the other, and says in the end which failed and which were left out. What passes is
-/// remembered with a hash of all that it depends on, and is left out until that changes.
+/// Number of test programs that run at a time: many tests wait for a browser, a device or another program.
+const AT_A_TIME: usize = 2;
+
+/// Runs the test programs, and says in the end which failed and which were left out. What passes is remembered with a hash
+/// of all that it depends on, and is left out until that changes.
 fn suite(
     root: &Path,
     arguments: &Arguments,
@@ -175,31 +179,50 @@ fn suite(
     let remembered = root.join("target/lapidary/passed");
     // The commit's seed changes with each commit; with it alone nothing is run again.
     let asked = (options, environment.iter().filter(|(name, _)| *name != SEED_VARIABLE).collect::<Vec<_>>());
-    let (mut failed, mut unchanged, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
+    let may_skip = !arguments.again && !arguments.refresh && arguments.times.is_none();
+    let (mut waiting, mut unchanged) = (Vec::new(), Vec::new());
     for executable in executables::built(root, targets)? {
         let file = remembered.join(executable.name.replace(' ', "_"));
         let hash = executable.hash(root, &asked)?.to_string();
-        let may_skip = !arguments.again && !arguments.refresh && arguments.times.is_none();
         if may_skip && std::fs::read_to_string(&file).is_ok_and(|passed| passed == hash) {
             unchanged.push(executable.name);
-            continue;
-        }
-        eprintln!("{}:", executable.name);
-        let ran = executable.run(options, environment)?;
-        seconds.extend(ran.seconds.into_iter().map(|(test, seconds)| (seconds, executable.name.clone(), test)));
-        if ran.passed {
-            std::fs::create_dir_all(&remembered)?;
-            std::fs::write(file, hash)?;
         } else {
-            failed.push(executable.name);
+            waiting.push((executable, file, hash));
         }
     }
+    let (waiting, done) = (Mutex::new(waiting.into_iter()), Mutex::new(Vec::new()));
+    let work = || -> Result<(), Failure> {
+        loop {
+            let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((executable, file, hash)) = next else { return Ok(()) };
+            eprintln!("{} ...", executable.name);
+            let ran = executable.run(options, environment)?;
+            if ran.passed {
+                std::fs::create_dir_all(&remembered)?;
+                std::fs::write(file, hash)?;
+            }
+            done.lock().unwrap_or_else(PoisonError::into_inner).push((executable.name, ran));
+        }
+    };
+    // A refresh writes files that other tests read.
+    let workers = if arguments.refresh { 1 } else { AT_A_TIME };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })?;
+    let done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(file) = &arguments.times {
-        lapidary_files::replace(file, table(seconds).as_bytes())?;
+        let seconds = done
+            .iter()
+            .flat_map(|(name, ran)| ran.seconds.iter().map(|(test, seconds)| (*seconds, name.clone(), test.clone())));
+        lapidary_files::replace(file, table(seconds.collect()).as_bytes())?;
     }
     if !unchanged.is_empty() {
         eprintln!("unchanged since they passed, and not run again: {} (--again runs them)", unchanged.join(", "));
     }
+    let failed: Vec<&str> = done.iter().filter(|(_, ran)| !ran.passed).map(|(name, _)| name.as_str()).collect();
     if !failed.is_empty() {
         eprintln!("failed: {}", failed.join(", "));
     }
@@ -211,7 +234,7 @@ fn table(mut seconds: Vec<(f64, String, String)>) -> String {
     seconds.sort_by(|one, other| other.0.total_cmp(&one.0));
     let total: f64 = seconds.iter().map(|(seconds, ..)| seconds).sum();
     let mut text = format!(
-        "Seconds of each test, as ./cook test --times wrote them: {} tests, {total:.0} s added up, run on {} threads.\n\n",
+        "Seconds of each test, as ./cook test --times wrote them: {} tests, {total:.0} s added up, {AT_A_TIME} programs at a time on {} threads each.\n\n",
         seconds.len(),
         std::thread::available_parallelism().map_or(1, usize::from)
     );

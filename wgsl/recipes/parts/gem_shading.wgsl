@@ -26,9 +26,9 @@ override DISPERSION_FORM: u32 = 1u;
 override WAVELENGTHS: u32 = 3u;
 // Number of internal hits that are followed.
 override BOUNCES: u32 = 1u;
-// The light that a ray still carries when it ends (at the last bounce, at the distance limit, or
-// because it met no facet) is taken from the environment along the ray, which keeps the energy and
-// guesses the direction. If false, that light is dropped, which darkens the stone.
+// The light that a ray still carries when it ends is taken from the environment along the ray, which
+// keeps the energy and guesses the direction. A ray ends at the last bounce, at the distance limit, or
+// where it meets no facet. If false, that light is dropped, which darkens the stone.
 override REST_FROM_ENVIRONMENT: bool = true;
 // A ray also ends where any of its light can leave: all of it then leaves there, which keeps the energy
 // and drops what would be reflected on. Channels that are totally reflected go on.

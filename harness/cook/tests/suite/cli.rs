@@ -3,7 +3,7 @@
 use lapidary_assay::dispatch;
 use lapidary_cookbook as cookbook;
 use lapidary_scene::{Scene, glb, gltf};
-use lapidary_testing::program::{cook, folder, run, succeeds};
+use lapidary_testing::program::{cook, folder, succeeds};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -38,27 +38,6 @@ fn a_command_of_the_repository_is_told_from_an_unknown_one() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("`gallery` is a command of the cookbook's repository"), "{said}");
-}
-
-/// The program of one who only copies gives what `cook` gives.
-#[test]
-fn the_small_program_copies_and_lists_the_same() {
-    let take = std::env::current_exe().expect("a path").ancestors().nth(2).expect("a folder").join("take");
-    for words in [
-        "copy fresnel refraction",
-        "copy fresnel --to hlsl",
-        "copy gem --effects dispersion",
-        "copy --help",
-        "copy frenel",
-        "list",
-        "list --json",
-        "list --markdown",
-    ] {
-        let words: Vec<&str> = words.split(' ').collect();
-        let (small, whole) = (run(&take, folder().path(), &words, &[]), cook(folder().path(), &words));
-        assert_eq!((small.code, &small.stderr), (whole.code, &whole.stderr), "{words:?}");
-        assert!(small.stdout == whole.stdout, "{words:?}: {} and {}", small.stdout, whole.stdout);
-    }
 }
 
 #[test]

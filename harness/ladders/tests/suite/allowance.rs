@@ -20,6 +20,9 @@ const WIDE: [(&str, &str, &str); 2] = [
     ("voxelization_span", "", "few triangles are so nearly edge-on that half a width of 64 is taken from as much"),
 ];
 
+/// Unless the suite is run whole, one function in this many.
+const ONE_IN: u64 = 4;
+
 /// Returns the fields whose bound is below the largest allowance, or over 8 times the allowance that
 /// includes the method's error, from a fixed seed.
 fn unfitting(
@@ -28,7 +31,11 @@ fn unfitting(
 ) -> Vec<(String, Field)> {
     let settings = Settings { cases: DEFAULT_CASES / 4, ..Settings::default() };
     let mut found = Vec::new();
-    for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
+    let bounded = formulas::all().iter().filter(|formula| formula.benign.is_none());
+    // Those whose bounds are known to be wide are always looked at.
+    let (wide, others): (Vec<_>, Vec<_>) =
+        bounded.partition(|formula| WIDE.iter().any(|(function, ..)| *function == formula.function));
+    for formula in wide.into_iter().chain(lapidary_testing::sampled(others, ONE_IN)) {
         let module = cookbook::module(formula.module).expect("its module");
         let program = Program::new(module.whole, module.name, formula.function).expect("valid");
         let allowance = allowance::of_formula(&program, formula, &tolerance(formula), accuracy, settings);

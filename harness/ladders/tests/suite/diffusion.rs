@@ -163,7 +163,7 @@ fn a_core_in_thin_matter_is_nearer_to_walks_with_the_flux_limiter() {
 /// Thin matter shows single scattering alone: what a half space would add belongs to light that would have collided.
 #[test]
 fn thin_balls_are_as_bright_as_walks() {
-    for optical_radius in [0.05f32, 0.3, 1.0, 3.0] {
+    for optical_radius in lapidary_testing::sampled([0.05f32, 0.3, 1.0, 3.0], 4) {
         let medium = Medium::isotropic(Vec3::splat(optical_radius / 8.0), Vec3::ZERO);
         let [linear, limited] = without_and_with_limiter(&ball(medium), 1024);
         println!("optical radius {optical_radius}: distance {linear:.3}, with the limiter {limited:.3}");
