@@ -106,20 +106,52 @@ impl Executable {
 
     /// Returns a hash of all that the tests depend on: the program itself, in which all Rust and WGSL is, the files and
     /// programs of the repository that it may read or run, and what is asked of it.
-    pub(crate) fn hash(&self, root: &Path, asked: &impl std::hash::Hash) -> std::io::Result<u64> {
+    pub(crate) fn hash(&self, files: &Files, asked: &impl std::hash::Hash) -> u64 {
         let mut hasher = DefaultHasher::new();
         asked.hash(&mut hasher);
-        std::fs::read(&self.path)?.hash(&mut hasher);
-        for file in read_by_tests(root, &self.folder)? {
-            file.hash(&mut hasher);
-            std::fs::read(root.join(&file)).unwrap_or_default().hash(&mut hasher);
-        }
+        built_when(&self.path).hash(&mut hasher);
+        files.below(&self.folder).for_each(|file| file.hash(&mut hasher));
         if let Some(programs) = self.path.ancestors().nth(2) {
             for program in ["cook", "gallery", "ladders", "take", "xtask"] {
-                std::fs::read(programs.join(program)).unwrap_or_default().hash(&mut hasher);
+                built_when(&programs.join(program)).hash(&mut hasher);
             }
         }
-        Ok(hasher.finish())
+        hasher.finish()
+    }
+}
+
+/// Returns what tells a program of cargo's from an earlier one; their contents are gigabytes.
+fn built_when(program: &Path) -> Option<(u64, std::time::SystemTime)> {
+    let data = std::fs::metadata(program).ok()?;
+    Some((data.len(), data.modified().ok()?))
+}
+
+/// The files that tests may read while they run, each with a hash: all that git knows but for Rust's, which the programs
+/// hold.
+pub(crate) struct Files {
+    root: PathBuf,
+    hashes: Vec<(String, u64)>,
+}
+
+impl Files {
+    /// Reads the files of a repository.
+    pub(crate) fn of(root: &Path) -> std::io::Result<Self> {
+        let mut git = Command::new("git");
+        git.arg("-C").arg(root).args(["ls-files", "--cached", "--others", "--exclude-standard", "-z"]);
+        let text = String::from_utf8(git.output()?.stdout).map_err(std::io::Error::other)?;
+        let hash = |file: &str| {
+            let mut hasher = DefaultHasher::new();
+            std::fs::read(root.join(file)).unwrap_or_default().hash(&mut hasher);
+            (file.to_owned(), hasher.finish())
+        };
+        let files = text.split('\0').filter(|file| !file.is_empty() && !file.ends_with(".rs"));
+        Ok(Self { root: root.to_owned(), hashes: files.map(hash).collect() })
+    }
+
+    /// Those that the tests of a package may read: a mirror's own read none but those of their folder.
+    fn below(&self, folder: &Path) -> impl Iterator<Item = &(String, u64)> {
+        let is_mirror = folder.parent().is_some_and(|parent| parent.ends_with("crates"));
+        self.hashes.iter().filter(move |(file, _)| !is_mirror || self.root.join(file).starts_with(folder))
     }
 }
 
@@ -128,17 +160,6 @@ fn timed(line: &str) -> Option<(String, f64)> {
     let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
     let seconds = rest.rsplit_once('<')?.1.strip_suffix("s>")?.parse().ok()?;
     Some((name.to_owned(), seconds))
-}
-
-/// Returns the files that tests may read while they run: all that git knows but for Rust's, which the programs hold. A
-/// mirror's own tests read none but those of their folder.
-fn read_by_tests(root: &Path, folder: &Path) -> std::io::Result<Vec<String>> {
-    let mut git = Command::new("git");
-    git.arg("-C").arg(root).args(["ls-files", "--cached", "--others", "--exclude-standard", "-z"]);
-    let text = String::from_utf8(git.output()?.stdout).map_err(std::io::Error::other)?;
-    let is_mirror = folder.parent().is_some_and(|parent| parent.ends_with("crates"));
-    let read = |file: &&str| !file.ends_with(".rs") && (!is_mirror || root.join(file).starts_with(folder));
-    Ok(text.split('\0').filter(|file| !file.is_empty()).filter(read).map(str::to_owned).collect())
 }
 
 #[cfg(test)]

@@ -181,9 +181,11 @@ fn suite(
     let asked = (options, environment.iter().filter(|(name, _)| *name != SEED_VARIABLE).collect::<Vec<_>>());
     let may_skip = !arguments.again && !arguments.refresh && arguments.times.is_none();
     let (mut waiting, mut unchanged) = (Vec::new(), Vec::new());
-    for executable in executables::built(root, targets)? {
+    let built = executables::built(root, targets)?;
+    let files = executables::Files::of(root)?;
+    for executable in built {
         let file = remembered.join(executable.name.replace(' ', "_"));
-        let hash = executable.hash(root, &asked)?.to_string();
+        let hash = executable.hash(&files, &asked).to_string();
         if may_skip && std::fs::read_to_string(&file).is_ok_and(|passed| passed == hash) {
             unchanged.push(executable.name);
         } else {

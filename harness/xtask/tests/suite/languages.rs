@@ -38,7 +38,7 @@ fn has_tools(skipped: &str) -> bool {
 }
 
 /// Unless the suite is run whole, one function in this many is compiled alone.
-const ONE_IN: u64 = 4;
+const ONE_IN: u64 = 8;
 
 /// How a text is compiled.
 #[derive(Clone, Copy)]

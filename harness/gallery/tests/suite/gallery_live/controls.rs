@@ -115,6 +115,9 @@ fn an_effect_is_another_shader() {
 /// What a visitor sees can be sent to another.
 #[test]
 fn the_address_holds_the_state() {
+    if !super::runs_whole("the_address_holds_the_state") {
+        return;
+    }
     let Some(mut page) = running("brilliant", "") else { return };
     assert_eq!(page.evaluate("location.hash").expect("an address"), "");
     set(
