@@ -4,7 +4,7 @@ use lapidary_ladders::Table;
 
 /// Puts a study's tables behind the ladder's table with that name. One that the report has nothing for is left out, so
 /// that a page keeps it.
-pub(crate) fn insert(tables: &mut Vec<Table>, behind: &str, own: impl IntoIterator<Item = Table>) {
-    let at = tables.iter().position(|table| table.name == behind).map_or(tables.len(), |at| at + 1);
-    tables.splice(at..at, own.into_iter().filter(|table| !table.is_empty()));
+pub(crate) fn insert(tables: &mut Vec<Table>, behind: &str, added: impl IntoIterator<Item = Table>) {
+    let place = tables.iter().position(|table| table.name == behind).map_or(tables.len(), |before| before + 1);
+    tables.splice(place..place, added.into_iter().filter(|table| !table.is_empty()));
 }

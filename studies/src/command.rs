@@ -124,16 +124,17 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
 }
 
 impl Beside {
-    /// Measures a study behind the ladder's rows, if there are any, and shows the report. `own` makes the study's tables.
+    /// Measures a study behind the ladder's rows, if there are any, and shows the report. `tables_of` makes the
+    /// study's tables.
     fn show(
         &self,
         context: &Context,
         ladder: &Ladder,
-        own: fn(&Report) -> Vec<Table>,
+        tables_of: fn(&Report) -> Vec<Table>,
         study: fn(&Gpu, &mut Report, Progress<'_>) -> Result<(), CostError>,
     ) -> Result<Outcome, Failure> {
         let start = |gpu: &Gpu| match &self.beside {
-            Some(path) => begun(path, ladder, own, gpu),
+            Some(path) => begun(path, ladder, tables_of, gpu),
             None => {
                 let Options { rounds, frame: [width, height], .. } =
                     timed(Options::<Rung> { rounds: ROUNDS, frame: FRAME, rungs: Vec::new() }, self.timed.rounds);
@@ -151,14 +152,14 @@ impl Beside {
 }
 
 /// Reads a ladder's report to which a study is added on the same device.
-fn begun(path: &Path, ladder: &Ladder, own: fn(&Report) -> Vec<Table>, gpu: &Gpu) -> Result<Report, Failure> {
+fn begun(path: &Path, ladder: &Ladder, tables_of: fn(&Report) -> Vec<Table>, gpu: &Gpu) -> Result<Report, Failure> {
     let report = read(ladder.name, path)?;
-    let at = path.display();
+    let file = path.display();
     if report.adapter != gpu.describe() {
-        return Err(Failure(format!("{at}: measured on {}, and not on {}", report.adapter, gpu.describe())));
+        return Err(Failure(format!("{file}: measured on {}, and not on {}", report.adapter, gpu.describe())));
     }
-    match own(&report).iter().find(|table| !table.is_empty()) {
-        Some(table) => Err(Failure(format!("{at}: holds what the study measures already, such as `{}`", table.name))),
+    match tables_of(&report).iter().find(|table| !table.is_empty()) {
+        Some(table) => Err(Failure(format!("{file}: holds what the study measures already, such as `{}`", table.name))),
         None => Ok(report),
     }
 }

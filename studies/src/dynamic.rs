@@ -129,17 +129,17 @@ impl<'gpu> Sequence<'gpu> {
 /// Returns the sequence with the fewest cycles that leave less than [`RESIDUAL`], or with the most, and what they leave.
 fn solved<'gpu>(
     gpu: &'gpu Gpu,
-    of: (Motion, Rung),
+    drawn: (Motion, Rung),
     start: Start,
     options: &Options,
 ) -> Result<Sequence<'gpu>, CostError> {
     let mut cycles = 1;
     loop {
-        let mut sequence = Sequence::new(gpu, of, (start, cycles, true), options)?;
+        let mut sequence = Sequence::new(gpu, drawn, (start, cycles, true), options)?;
         sequence.round()?;
         if sequence.residual <= RESIDUAL || cycles == MOST_CYCLES {
             // Frames that are timed measure nothing.
-            let timed = Sequence::new(gpu, of, (start, cycles, false), options)?;
+            let timed = Sequence::new(gpu, drawn, (start, cycles, false), options)?;
             return Ok(Sequence { residual: sequence.residual, ..timed });
         }
         cycles += 1;

@@ -23,11 +23,11 @@ mod tests {
 
     #[test]
     fn pages_know_the_studies_tables() {
-        let mut own = tables();
-        own.sort_unstable();
+        let mut names = tables();
+        names.sort_unstable();
         let mut known = page::STUDIED.to_vec();
         known.sort_unstable();
-        assert_eq!(own, known);
+        assert_eq!(names, known);
     }
 
     #[test]

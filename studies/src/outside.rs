@@ -71,8 +71,8 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         let shows_stone = shows(gpu, &scene, &usual, &clear(&scene).collect::<Vec<_>>())?;
         let exact = Settings { rung: Rung::Reference, samples: REFERENCE_SAMPLES, ..usual.clone() };
         let reference = kept(render::render_means(gpu, &scene, &exact)?, &shows_stone);
-        let apart = kept(each_alone(gpu, &scene, &exact, &usual)?, &shows_stone);
-        for (measure, value) in MEASURES.into_iter().zip(errors(&apart, &reference)) {
+        let alone = kept(each_alone(gpu, &scene, &exact, &usual)?, &shows_stone);
+        for (measure, value) in MEASURES.into_iter().zip(errors(&alone, &reference)) {
             report.rows.push(Row::new(ALONE, &view, measure, value, ""));
         }
         let settings = |(outside, screen_steps)| {
@@ -161,7 +161,7 @@ fn table(report: &Report) -> Table {
     let views = |scene: &str| -> Vec<&str> {
         report.views(MEASURES[0]).into_iter().filter(|view| view.split(',').next() == Some(scene)).collect()
     };
-    let of = |way: &str, scene: &str, measure: &str| {
+    let mean_of = |way: &str, scene: &str, measure: &str| {
         let values = views(scene).into_iter().map(|view| report.value(way, view, measure));
         mean(&values.collect::<Option<Vec<_>>>()?)
     };
@@ -175,7 +175,7 @@ fn table(report: &Report) -> Table {
     for scene in SCENES {
         lines = lines
             .column(format!("{scene}: FLIP, RMSE, energy"), |way| {
-                MEASURES.map(|measure| figure(of(way, scene, measure), 3)).join(", ")
+                MEASURES.map(|measure| figure(mean_of(way, scene, measure), 3)).join(", ")
             })
             .column("ms", |way| figure(ms(way, scene), 1))
             .column("× environment", |way| {

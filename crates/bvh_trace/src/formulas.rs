@@ -108,11 +108,11 @@ fn grid_case(draws: &mut Draws<'_>) -> Case {
     let level = step(draws);
     let flat = draws.below(2) == 0;
     let mut corner = || {
-        let mut at = steps(draws);
+        let mut vertex = steps(draws);
         if flat {
-            at.z = level;
+            vertex.z = level;
         }
-        ray.origin + turn_back(at)
+        ray.origin + turn_back(vertex)
     };
     let (a, b, c) = (corner(), corner(), corner());
     let distance = draws.pick(&[FAR, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0]);

@@ -39,8 +39,8 @@ fn sigma(draws: &mut Draws<'_>) -> f32 {
         0 => draws.pick(&[0.0, SUBNORMAL, 1e-6, 3.0, 8.0, 1e6, 1e19, f32::MAX, -1.0]),
         1 => draws.magnitude(-126, 0),
         2 => {
-            let at = draws.pick(&[mirror::CDRF_SWITCH, mirror::CDRF_CHEAP_SWITCH, mirror::CDRF_SPHERICAL_SWITCH]);
-            draws.nudged(at, 2)
+            let switch = draws.pick(&[mirror::CDRF_SWITCH, mirror::CDRF_CHEAP_SWITCH, mirror::CDRF_SPHERICAL_SWITCH]);
+            draws.nudged(switch, 2)
         }
         3 | 4 => draws.between(0.0, 0.1),
         5 | 6 => draws.between(0.1, 0.4),
@@ -563,9 +563,9 @@ fn tables() -> Vec<Formula> {
         .edge("the terminator", |(c, _)| c == 0.0)
         .edge("no blur", |(_, s)| s == 0.0)
         .edge("huge", |(_, s)| s > 1e18)
-        .invariant("fractions", |_, at: Vec2| in_unit_range(at.x).and(in_unit_range(at.y)))
-        .invariant_at_nearest("the terminator in the middle", |(c, _), at: Vec2| {
-            if c == 0.0 { near("column", at.x.into(), 0.5, 0.0) } else { Ok(()) }
+        .invariant("fractions", |_, place: Vec2| in_unit_range(place.x).and(in_unit_range(place.y)))
+        .invariant_at_nearest("the terminator in the middle", |(c, _), place: Vec2| {
+            if c == 0.0 { near("column", place.x.into(), 0.5, 0.0) } else { Ok(()) }
         })
         .build(),
         formula(M, "cdrf_table_texel", mirror::table_texel, oracle::table_texel, |draws| {
@@ -607,8 +607,8 @@ fn tables() -> Vec<Formula> {
         .build(),
         formula(M, "cdrf_texels", mirror::texels, oracle::texels, |draws| (coordinates(draws), size(draws)))
             .edge("one texel", |(_, size)| size == UVec2::ONE)
-            .edge("the last texel", |(at, _)| at.x == 1.0)
-            .edge("out of range", |(at, _)| at.y > 1.0)
+            .edge("the last texel", |(place, _)| place.x == 1.0)
+            .edge("out of range", |(place, _)| place.y > 1.0)
             .invariant("inside the table, neighbours", |(_, size), texels: CdrfTexels| {
                 let CdrfTexels { lower, upper, weight } = texels;
                 let inside = lower.cmplt(size).all() && upper == (lower + 1).min(size - 1);

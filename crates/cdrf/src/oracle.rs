@@ -30,7 +30,7 @@ fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
     (0..count as u32)
         .map(|index| {
             let middle = low + half * (2.0 * f64::from(index) + 1.0);
-            half * GAUSS.iter().map(|(at, weight)| weight * f(middle + half * at)).sum::<f64>()
+            half * GAUSS.iter().map(|(node, weight)| weight * f(middle + half * node)).sum::<f64>()
         })
         .sum()
 }
@@ -353,9 +353,9 @@ pub fn table_coordinates(cosine: f64, sigma: f64) -> DVec2 {
 /// the odds of sigma to 1.
 pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
     let last = (size.max(UVec2::splat(2)) - 1).as_dvec2();
-    let at = texel.as_dvec2().min(last) / last;
-    let sigma = if at.y < 1.0 { (1.0 - at.y).recip() - 1.0 } else { 1e40 };
-    DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * at.x - 1.0, tint * sigma)))
+    let fraction = texel.as_dvec2().min(last) / last;
+    let sigma = if fraction.y < 1.0 { (1.0 - fraction.y).recip() - 1.0 } else { 1e40 };
+    DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * fraction.x - 1.0, tint * sigma)))
 }
 
 /// Interpolates between half a texel from one edge and half a texel from the other.
@@ -382,9 +382,9 @@ pub struct CdrfTexels {
 
 /// Splits the distance from the centre of the first texel into its whole part and the remainder.
 pub fn texels(coordinates: DVec2, size: UVec2) -> CdrfTexels {
-    let side = |at: f64, size: u32| {
-        let at = at.clamp(0.0, 1.0) * f64::from(size - 1);
-        (at.trunc() as u32, (at.trunc() as u32 + 1).min(size - 1), at.fract())
+    let side = |coordinate: f64, size: u32| {
+        let offset = coordinate.clamp(0.0, 1.0) * f64::from(size - 1);
+        (offset.trunc() as u32, (offset.trunc() as u32 + 1).min(size - 1), offset.fract())
     };
     let (column, row) = (side(coordinates.x, size.x), side(coordinates.y, size.y));
     CdrfTexels {

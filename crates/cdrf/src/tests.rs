@@ -123,20 +123,20 @@ fn an_error_of_the_angle_enters_by_an_eighth_of_the_variance() {
 /// rounding.
 #[test]
 fn forms_meet_without_a_seam() {
-    let at = f64::from(CDRF_SWITCH);
+    let switch = f64::from(CDRF_SWITCH);
     let step = 1e-4;
-    let apart = |c: f64, sigma: f64| {
+    let difference = |c: f64, sigma: f64| {
         let v = sigma * sigma;
         // The shader's polynomial for e^(-v/2).
         let slip = 1.0 - v * (0.5 - v * (0.125 - v * 0.02064)) - (-0.5 * v).exp();
         let edge = edge_in_f64(c, sigma, 3, 0.0) + slip * c * oracle::normal_share(c.asin() / sigma);
         edge - oracle::series(c, sigma, 7)
     };
-    assert!(most(|c| apart(c, at).abs()) < 7.1e-8, "{:e}", most(|c| apart(c, at).abs()));
-    let in_sigma = most(|c| ((apart(c, at + step) - apart(c, at - step)) / (2.0 * step)).abs());
+    assert!(most(|c| difference(c, switch).abs()) < 7.1e-8, "{:e}", most(|c| difference(c, switch).abs()));
+    let in_sigma = most(|c| ((difference(c, switch + step) - difference(c, switch - step)) / (2.0 * step)).abs());
     assert!(in_sigma < 4e-6, "{in_sigma:e}");
     let in_angle = most(|c| {
-        let turned = |by: f64| apart((c.acos() + by).clamp(0.0, PI).cos(), at);
+        let turned = |by: f64| difference((c.acos() + by).clamp(0.0, PI).cos(), switch);
         ((turned(step) - turned(-step)) / (2.0 * step)).abs()
     });
     assert!(in_angle < 1e-6, "{in_angle:e}");
@@ -180,8 +180,8 @@ fn oracle_of_the_sphere_is_one_function() {
     // The sigmas at which its methods of calculation meet.
     for (sigma, bound) in [(0.1, 1e-9), (1e-3, 2e-9)] {
         let below = sigma * (1.0 - 1e-12);
-        let apart = most(|c| (oracle::spherical(c, sigma) - oracle::spherical(c, below)).abs());
-        assert!(apart < bound, "{sigma}: {apart:e}");
+        let difference = most(|c| (oracle::spherical(c, sigma) - oracle::spherical(c, below)).abs());
+        assert!(difference < bound, "{sigma}: {difference:e}");
     }
     // The first coefficients, known in closed form.
     let wide = 0.9f64;
@@ -198,12 +198,12 @@ fn oracle_of_the_sphere_is_one_function() {
         ]
     };
     let a = [0.25, 0.5, 5.0 / 16.0, 0.0, -3.0 / 32.0, 0.0, 13.0 / 256.0];
-    let apart = most(|c| {
+    let difference = most(|c| {
         let p = legendre(c);
         let sum: f64 = (0..7).map(|l| a[l] * (-0.5 * wide * wide * (l * (l + 1)) as f64).exp() * p[l]).sum();
         (sum - oracle::spherical(c, wide)).abs()
     });
-    assert!(apart < 1e-9, "{apart:e}");
+    assert!(difference < 1e-9, "{difference:e}");
     // The limit is the mean.
     assert!((oracle::spherical(0.3, 20.0) - 0.25).abs() < 1e-12);
 }

@@ -34,13 +34,13 @@ fn two_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
         1 => size * draws.in_cube().as_dvec3(),
         _ => 100.0 * size * draws.in_cube().as_dvec3(),
     };
-    let apart = match draws.below(8) {
+    let offset = match draws.below(8) {
         0 => DVec3::ZERO,
         1 => axis,
         2 => axis.cross(normal_j.as_dvec3()).normalize_or(DVec3::X),
         _ => draws.in_cube().as_dvec3(),
     };
-    (origin_i.as_vec3(), normal_i, (origin_i + size * apart).as_vec3(), normal_j)
+    (origin_i.as_vec3(), normal_i, (origin_i + size * offset).as_vec3(), normal_j)
 }
 
 /// Draws a triangle of any size: fat, thin around the limit of a sliver, a needle at the origin, or
@@ -119,9 +119,9 @@ fn benign_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let angle = 0.5 + 2.1 * draws.unit();
     let normal_j = tilted(draws, normal_i, angle);
     let [t_i, t_j] = [(); 2].map(|()| draws.pick(&[1.0, -1.0]) * (0.5 + 1.5 * draws.unit()));
-    let apart = draws.unit() * normal_i.cross(normal_j).normalize();
+    let offset = draws.unit() * normal_i.cross(normal_j).normalize();
     let origin_i = draws.in_cube();
-    let origin_j = origin_i.as_dvec3() + t_i * normal_i + apart - t_j * normal_j;
+    let origin_j = origin_i.as_dvec3() + t_i * normal_i + offset - t_j * normal_j;
     (origin_i, normal_i.as_vec3(), origin_j.as_vec3(), normal_j.as_vec3())
 }
 

@@ -124,8 +124,8 @@ impl Facets {
 
 /// Returns the corners of each triangle.
 fn corners<'a>(positions: &'a [Vec3], indices: &'a [u32]) -> impl Iterator<Item = [Vec3; 3]> + 'a {
-    let at = |index: u32| positions[index as usize];
-    indices.chunks_exact(3).map(move |corners| [at(corners[0]), at(corners[1]), at(corners[2])])
+    let corner = |index: u32| positions[index as usize];
+    indices.chunks_exact(3).map(move |corners| [corner(corners[0]), corner(corners[1]), corner(corners[2])])
 }
 
 /// Returns the largest coordinate of a corner.

@@ -234,8 +234,8 @@ impl Cone {
         if self.cosine > 0.0 && other.cosine > 0.0 && self.middle.dot(other.middle) < between {
             return false;
         }
-        let leaves_out = |of: &Self, other: &Self| {
-            of.sides.iter().any(|side| other.edges.iter().all(|edge| side.dot(*edge) < -APART))
+        let leaves_out = |one: &Self, other: &Self| {
+            one.sides.iter().any(|side| other.edges.iter().all(|edge| side.dot(*edge) < -APART))
         };
         !leaves_out(self, other) && !leaves_out(other, self)
     }
@@ -253,10 +253,10 @@ fn direction(place: DVec2) -> DVec3 {
 /// Returns the candidates of each cell. A cell is a square on a face of the octahedron or, on its
 /// edge, two triangles on two faces; each is a cone with flat sides.
 fn lists(facets: &[Cone], side: u32) -> Vec<Vec<u32>> {
-    let at = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y)) * (2.0 / f64::from(side)) - 1.0;
+    let position_of = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y)) * (2.0 / f64::from(side)) - 1.0;
     let cells = (0..side * side).map(|cell| (cell % side, cell / side));
     let list = cells.map(|(x, y)| {
-        let places = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+        let places = [position_of(x, y), position_of(x + 1, y), position_of(x + 1, y + 1), position_of(x, y + 1)];
         let middle = 0.5 * (places[0] + places[2]);
         // The octahedron's edges cross the square's quadrants from axis to axis.
         let [first, second] = if middle.x * middle.y > 0.0 { [[0, 1, 3], [1, 2, 3]] } else { [[0, 1, 2], [0, 2, 3]] };

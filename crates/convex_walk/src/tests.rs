@@ -281,15 +281,15 @@ fn a_plane_that_bounds_nothing_is_in_no_cell() {
 fn what_has_no_map_is_told() {
     let cube: Vec<Vec4> =
         [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].map(|n| n.extend(1.0)).to_vec();
-    let of = |planes: &[Vec4], side| FacetMap::of_planes(planes, side).expect_err("no map").to_string();
-    assert!(of(&cube, 0).contains("even number") && of(&cube, 7).contains("a map of side 7"));
-    assert!(of(&cube[..5], 8).contains("leave a side open") && of(&[], 8).contains("leave a side open"));
+    let error_of = |planes: &[Vec4], side| FacetMap::of_planes(planes, side).expect_err("no map").to_string();
+    assert!(error_of(&cube, 0).contains("even number") && error_of(&cube, 7).contains("a map of side 7"));
+    assert!(error_of(&cube[..5], 8).contains("leave a side open") && error_of(&[], 8).contains("leave a side open"));
     let mut away = cube.clone();
     away[3].w = -0.5;
-    assert!(of(&away, 8).contains("plane 3"), "{}", of(&away, 8));
+    assert!(error_of(&away, 8).contains("plane 3"), "{}", error_of(&away, 8));
     away[3].w = f32::NAN;
-    assert!(of(&away, 8).contains("plane 3"));
-    assert!(of(&vec![Vec4::W; 5_000], 8).contains("5000 facets"));
+    assert!(error_of(&away, 8).contains("plane 3"));
+    assert!(error_of(&vec![Vec4::W; 5_000], 8).contains("5000 facets"));
 }
 
 /// The runner-up of a walk, of the candidates that it tests, is the second plane of all where the edge

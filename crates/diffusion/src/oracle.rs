@@ -38,7 +38,7 @@ fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
     (0..count as u32)
         .map(|index| {
             let middle = low + half * (2.0 * f64::from(index) + 1.0);
-            half * GAUSS.iter().map(|(at, weight)| weight * f(middle + half * at)).sum::<f64>()
+            half * GAUSS.iter().map(|(node, weight)| weight * f(middle + half * node)).sum::<f64>()
         })
         .sum()
 }
@@ -46,12 +46,12 @@ fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// Returns the integral of `f` over [0, high], in panels that begin with the width `scale` and double up to
 /// a width of 1.
 fn graded(high: f64, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut at, mut width, mut sum) = (0.0, scale, 0.0);
-    while at < high {
+    let (mut start, mut width, mut sum) = (0.0, scale, 0.0);
+    while start < high {
         width = f64::min(width, 1.0);
-        let next = f64::min(at + width, high);
-        sum += integral(at, next, 1.0, &f);
-        at = next;
+        let next = f64::min(start + width, high);
+        sum += integral(start, next, 1.0, &f);
+        start = next;
         width *= 2.0;
     }
     sum
@@ -279,8 +279,8 @@ pub fn tail(depth: f64, cosine_eye: f64, cosine_light: f64, gamma: f64, milne: f
 
 /// What a grid with nodes at two depths shows of a fluence in a half space, and what of it an eye sees:
 /// straight lines between the nodes and up to `surface`, the fluence itself below.
-fn shown(m: f64, (node, gap): (f64, f64), surface: f64, scale: f64, of: impl Fn(f64) -> f64) -> f64 {
-    let (first, second) = (of(node), of(node + gap));
+fn shown(m: f64, (node, gap): (f64, f64), surface: f64, scale: f64, fluence_at: impl Fn(f64) -> f64) -> f64 {
+    let (first, second) = (fluence_at(node), fluence_at(node + gap));
     let line = |from: f64, to: f64, length: f64| {
         graded(f64::min(length / m, END), 1.0, |v| (from + (to - from) * m * v / length) * (-v).exp())
     };
@@ -290,7 +290,7 @@ fn shown(m: f64, (node, gap): (f64, f64), surface: f64, scale: f64, of: impl Fn(
     }
     let below = if gap > 0.0 { line(first, second, gap) } else { 0.0 };
     let rest = if gap / m < END {
-        (-gap / m).exp() * graded(END, scale, |v| of(node + gap + m * v) * (-v).exp())
+        (-gap / m).exp() * graded(END, scale, |v| fluence_at(node + gap + m * v) * (-v).exp())
     } else {
         0.0
     };
@@ -311,8 +311,8 @@ pub fn local(
 ) -> f64 {
     let (m, c, g) = (clamped_cosine(cosine_eye), clamped_cosine(cosine_light), gamma.clamp(0.0, 1.0));
     let (node, gap, z) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6), clamped_milne(milne));
-    let of = |t: f64| emission(t, c, g, z);
-    let shown = shown(m, (node, gap), of(node) * z / (node + z), c / m, of);
+    let emission_at = |t: f64| emission(t, c, g, z);
+    let shown = shown(m, (node, gap), emission_at(node) * z / (node + z), c / m, emission_at);
     let albedo = (1.0 - g) * (1.0 + g) / (4.0 * PI);
     law.clamp(0.0, 4.0) - albedo * c / (m + c) - albedo * angle.clamp(0.0, 1.25) * shown
 }
@@ -338,16 +338,16 @@ pub fn local_around(cosine_eye: f64, law: f64, gamma: f64, milne: f64, depth: f6
     let (m, g, z) = (clamped_cosine(cosine_eye), gamma.clamp(0.0, 1.0), clamped_milne(milne));
     let (node, gap) = (depth.clamp(0.0, 1e6), gap.clamp(0.0, 1e6));
     let kappa = 3f64.sqrt() * g;
-    let of = |t: f64| (-kappa * t).exp() / (1.0 + kappa * z);
-    let surface = 1.0 + (of(node) - 1.0) * z / (node + z);
-    let seen = angle.clamp(0.0, 1.25) * shown(m, (node, gap), surface, 1.0, of);
+    let fluence_at = |t: f64| (-kappa * t).exp() / (1.0 + kappa * z);
+    let surface = 1.0 + (fluence_at(node) - 1.0) * z / (node + z);
+    let seen = angle.clamp(0.0, 1.25) * shown(m, (node, gap), surface, 1.0, fluence_at);
     law.clamp(0.0, 1.0) - (1.0 - g) * (1.0 + g) * seen
 }
 
 /// Multiplies the distances from the opposite corner.
 pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
     let inside = fraction.clamp(DVec3::ZERO, DVec3::ONE).to_array();
-    let along = |(axis, at): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - at } else { at };
+    let along = |(axis, share): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - share } else { share };
     let trilinear: f64 = inside.into_iter().enumerate().map(along).product();
     volume * trilinear + volume * f64::from(LEAST_WEIGHT)
 }

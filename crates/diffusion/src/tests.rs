@@ -41,14 +41,14 @@ fn the_fluence_solves_its_equation() {
 
 /// What the eye sees of a fluence on a grid: straight lines from `surface` to a node and to the next, and
 /// fine segments of the fluence from there on.
-fn shown(eye: f32, (depth, gap): (f32, f32), surface: f32, of: impl Fn(f32) -> f32) -> f64 {
-    let (first, second) = (of(depth), of(depth + gap));
+fn shown(eye: f32, (depth, gap): (f32, f32), surface: f32, fluence_at: impl Fn(f32) -> f32) -> f64 {
+    let (first, second) = (fluence_at(depth), fluence_at(depth + gap));
     let mut shown = f64::from(segment(surface, first, depth / eye));
     shown += f64::from((-depth / eye).exp() * segment(first, second, gap / eye));
     let step = 0.01 * eye;
     for index in 0..2000u16 {
-        let at = depth + gap + step * f32::from(index);
-        shown += f64::from((-at / eye).exp() * segment(of(at), of(at + step), step / eye));
+        let start = depth + gap + step * f32::from(index);
+        shown += f64::from((-start / eye).exp() * segment(fluence_at(start), fluence_at(start + step), step / eye));
     }
     shown
 }
@@ -61,10 +61,10 @@ fn grid_and_local_part_make_the_exact_law() {
         for (eye, light) in [(0.2f32, 1.0f32), (1.0, 0.2), (0.7, 0.6)] {
             for (depth, gap) in [(0.1f32, 0.5f32), (0.5, 1.0), (2.0, 0.25), (4.0, 8.0)] {
                 for milne in [DIFFUSION_MILNE, 2.6] {
-                    let of = |depth: f32| fluence(depth, light, gamma, milne);
+                    let fluence_at = |depth: f32| fluence(depth, light, gamma, milne);
                     // Robin's profile, by its definition at the surface.
-                    let surface = of(depth) * profile(0.0, depth, milne);
-                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, of);
+                    let surface = fluence_at(depth) * profile(0.0, depth, milne);
+                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, fluence_at);
                     let single = f64::from(light / (eye + light));
                     let part = local(eye, light, law, gamma, milne, depth, gap, angle);
                     let albedo = f64::from(1.0 - gamma * gamma);
@@ -84,10 +84,10 @@ fn grid_and_local_part_make_the_exact_law_under_light_from_all_around() {
             for (depth, gap) in [(0.1f32, 0.5f32), (0.5, 1.0), (2.0, 0.25), (4.0, 8.0)] {
                 for milne in [DIFFUSION_MILNE, 2.6] {
                     let kappa = 3f32.sqrt() * gamma;
-                    let of = |depth: f32| (-kappa * depth).exp() / (1.0 + kappa * milne);
+                    let fluence_at = |depth: f32| (-kappa * depth).exp() / (1.0 + kappa * milne);
                     let share = profile(0.0, depth, milne);
-                    let surface = share * of(depth) + 1.0 - share;
-                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, of);
+                    let surface = share * fluence_at(depth) + 1.0 - share;
+                    let shown = f64::from(angle) * shown(eye, (depth, gap), surface, fluence_at);
                     let part = local_around(eye, law, gamma, milne, depth, gap, angle);
                     let whole = f64::from(part) + f64::from(1.0 - gamma * gamma) * shown;
                     assert!((whole - f64::from(law)).abs() < 1e-5, "{gamma} {eye} {depth} {gap}: {whole}");
@@ -113,8 +113,8 @@ fn known_extrapolation_lengths() {
 
 #[test]
 fn weights_of_corners_add_up() {
-    for at in [Vec3::ZERO, Vec3::ONE, Vec3::new(0.25, 0.5, 0.875)] {
-        let sum: f32 = (0..8).map(|corner| weight(at, corner, 1.0)).sum();
-        assert!((sum - 1.0 - 8.0 * DIFFUSION_LEAST_WEIGHT).abs() < 1e-6, "{at}: {sum}");
+    for fraction in [Vec3::ZERO, Vec3::ONE, Vec3::new(0.25, 0.5, 0.875)] {
+        let sum: f32 = (0..8).map(|corner| weight(fraction, corner, 1.0)).sum();
+        assert!((sum - 1.0 - 8.0 * DIFFUSION_LEAST_WEIGHT).abs() < 1e-6, "{fraction}: {sum}");
     }
 }

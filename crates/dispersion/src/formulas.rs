@@ -99,9 +99,11 @@ fn sellmeier() -> Formula {
         (material(draws), wavelength(draws))
     })
     .edge("one of the materials", |(material, _)| material == mirror::DISPERSION_CUBIC_ZIRCONIA)
-    .edge("rutile at its strongest", |(material, at)| material == mirror::DISPERSION_RUTILE && at < 400.0)
-    .edge("a resonance next to the visible", |(material, at)| {
-        material.resonances.to_array().iter().any(|resonance| (0.095..0.1).contains(resonance)) && at < 390.0
+    .edge("rutile at its strongest", |(material, nanometres)| {
+        material == mirror::DISPERSION_RUTILE && nanometres < 400.0
+    })
+    .edge("a resonance next to the visible", |(material, nanometres)| {
+        material.resonances.to_array().iter().any(|resonance| (0.095..0.1).contains(resonance)) && nanometres < 390.0
     })
     .edge("a constant", |(material, _)| material.constant > 0.0)
     .edge("below 0 under the root", |(material, _)| material.strengths == Vec3::splat(40.0))
@@ -146,8 +148,8 @@ fn abbe() -> Formula {
     .edge("no dispersion", |(_, dispersion, _)| dispersion == 0.0)
     .edge("nothing to disperse", |(index, dispersion, _)| index == 1.0 && dispersion > 0.0)
     .edge("held at 1", |(index, dispersion, wavelength)| index > 1.5 && dispersion > 40.0 && wavelength > 770.0)
-    .invariant("at least 1, and the index itself without dispersion", |(index, dispersion, _), at: f32| {
-        let lack = if dispersion == 0.0 { f64::from(at - index).abs() } else { (1.0 - f64::from(at)).max(0.0) };
+    .invariant("at least 1, and the index itself without dispersion", |(index, dispersion, _), found: f32| {
+        let lack = if dispersion == 0.0 { f64::from(found - index).abs() } else { (1.0 - f64::from(found)).max(0.0) };
         near("lack", lack, 0.0, 0.0)
     })
     .build()
@@ -477,7 +479,7 @@ fn direction() -> Formula {
     .edge("the reference itself", |(.., offset)| offset == 0.0)
     .edge("a longer wavelength", |(.., offset)| offset < -0.01)
     .edge("a spread beyond all measure", |(_, gradient, offset)| gradient.length() * offset > 1e12)
-    .invariant("unit length", |_, at: Vec3| near("length", at.as_dvec3().length(), 1.0, UNIT))
+    .invariant("unit length", |_, found: Vec3| near("length", found.as_dvec3().length(), 1.0, UNIT))
     .pair(
         "as far to one side as to the other",
         |(direction, gradient, offset)| (direction, gradient, -offset),

@@ -137,13 +137,14 @@ fn materials_have_their_known_indices() {
     let known = [(2.41749, 55.3, 0.0444), (1.76817, 72.3, 0.0181), (1.54428, 69.7, 0.0133), (1.51680, 64.2, 0.0138)];
     let known = known.into_iter().chain([(2.15877, 33.5, 0.0604)]);
     for ((name, mirror, exact), (index, number, spread)) in MATERIALS.into_iter().zip(known) {
-        let at = |line: f32| oracle::sellmeier(exact, line.into());
+        let index_at = |line: f32| oracle::sellmeier(exact, line.into());
         // Handbooks give n_d at 587.56 nm.
         let found = oracle::sellmeier(exact, 587.5618);
         assert!((found - index).abs() < 6e-6, "{name}: n_d {found}");
-        let found = oracle::abbe_number(at(DISPERSION_LINE_D), at(DISPERSION_LINE_F), at(DISPERSION_LINE_C));
+        let found =
+            oracle::abbe_number(index_at(DISPERSION_LINE_D), index_at(DISPERSION_LINE_F), index_at(DISPERSION_LINE_C));
         assert!((found - number).abs() < 0.06, "{name}: V_d {found}");
-        let found = at(DISPERSION_LINE_G) - at(DISPERSION_LINE_B);
+        let found = index_at(DISPERSION_LINE_G) - index_at(DISPERSION_LINE_B);
         assert!((found - spread).abs() < 6e-5, "{name}: n_G - n_B {found}");
         // The mirror's coefficients are the oracle's, rounded.
         for wavelength in (380..=780).step_by(5).map(|wavelength| wavelength as f32) {
@@ -158,9 +159,9 @@ fn materials_have_their_known_indices() {
 #[test]
 fn the_stones_that_disperse_most_have_their_known_indices() {
     for ((name, mirror, exact), (index, spread)) in FURTHER.into_iter().zip([(2.613, 0.33), (2.409, 0.19)]) {
-        let at = |wavelength: f64| oracle::sellmeier(exact, wavelength);
-        assert!((at(589.3) - index).abs() < 2e-3, "{name}: n_D {}", at(589.3));
-        let found = at(DISPERSION_LINE_G.into()) - at(DISPERSION_LINE_B.into());
+        let index_at = |wavelength: f64| oracle::sellmeier(exact, wavelength);
+        assert!((index_at(589.3) - index).abs() < 2e-3, "{name}: n_D {}", index_at(589.3));
+        let found = index_at(DISPERSION_LINE_G.into()) - index_at(DISPERSION_LINE_B.into());
         assert!((found - spread).abs() < 0.025, "{name}: n_G - n_B {found}");
         for wavelength in (380..=780).step_by(5).map(|wavelength| wavelength as f32) {
             let off = f64::from(sellmeier(mirror, wavelength)) - oracle::sellmeier(exact, wavelength.into());
@@ -440,11 +441,11 @@ fn each_wavelength_has_its_own_total_internal_reflection() {
         let cosine = (1.0 - 1.0 / (index * index)).sqrt() + random.between_f64(-0.01, 0.01);
         path.exit = facing(&mut random, inside, cosine);
         let (tracked, gradient) = path.tracked_inside(reference);
-        let own = wavelengths.map(|wavelength| oracle::sellmeier(exact, wavelength.into()));
-        let truth = own.map(|own| path.out(own).is_some());
+        let indices = wavelengths.map(|wavelength| oracle::sellmeier(exact, wavelength.into()));
+        let truth = indices.map(|exact_index| path.out(exact_index).is_some());
         let told = [0, 1, 2].map(|channel| {
-            let ray = direction(tracked, gradient, own[channel] as f32 - reference).as_dvec3();
-            snell(ray, path.exit, 1.0 / own[channel]).is_some()
+            let ray = direction(tracked, gradient, indices[channel] as f32 - reference).as_dvec3();
+            snell(ray, path.exit, 1.0 / indices[channel]).is_some()
         });
         let alone = path.out(index).is_some();
         rays += 3;
@@ -496,12 +497,12 @@ fn table_is_current() {
     let mut table = String::new();
     for (name, material, exact) in MATERIALS {
         let mut random = Draws::of_row(9, 0);
-        let [reference, blue] = [DISPERSION_RED, DISPERSION_BLUE].map(|at| sellmeier(material, at));
+        let [reference, blue] = [DISPERSION_RED, DISPERSION_BLUE].map(|wavelength| sellmeier(material, wavelength));
         let exact_blue = oracle::sellmeier(exact, DISPERSION_BLUE.into());
         let paths: Vec<Path> = (0..4000).map(|_| Path::random(&mut random, reference.into(), 1, 0.25)).collect();
         let truths: Vec<DVec3> = paths.iter().map(|path| path.out(exact_blue).expect("it leaves")).collect();
-        let errors = |at: &dyn Fn(&Path) -> DVec3| -> f64 {
-            let errors: Vec<f64> = paths.iter().zip(&truths).map(|(path, truth)| angle(at(path), *truth)).collect();
+        let errors = |ray_of: &dyn Fn(&Path) -> DVec3| -> f64 {
+            let errors: Vec<f64> = paths.iter().zip(&truths).map(|(path, truth)| angle(ray_of(path), *truth)).collect();
             root_mean_square(&errors).to_degrees()
         };
         let none = errors(&|path| path.out(reference.into()).expect("it leaves"));

@@ -66,8 +66,8 @@ fn softbox_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2, f32) {
 fn aimed(draws: &mut Draws<'_>, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> Vec3 {
     let (axis, up) = (axis.as_dvec3(), up.as_dvec3());
     let reach = 1.2 * (half_size.as_dvec2() + f64::from(softness));
-    let at = DVec2::new(2.0 * draws.unit() - 1.0, 2.0 * draws.unit() - 1.0) * reach;
-    (axis + at.x * up.cross(axis) + at.y * up).normalize().as_vec3()
+    let offset = DVec2::new(2.0 * draws.unit() - 1.0, 2.0 * draws.unit() - 1.0) * reach;
+    (axis + offset.x * up.cross(axis) + offset.y * up).normalize().as_vec3()
 }
 
 /// A light's axis, up vector, half size and softness.
@@ -292,11 +292,11 @@ fn texel_formulas() -> Vec<Formula> {
             let size = UVec2::new(4 + draws.below(60), 4 + draws.below(60));
             // Well inside a cell between texel centres, so that rounding does not decide the
             // column.
-            let at = |draws: &mut Draws<'_>, side: u32| {
+            let share = |draws: &mut Draws<'_>, side: u32| {
                 (0.6 + draws.below(side - 1) as f32 + draws.between(0.0, 0.8)) / side as f32
             };
-            let u = at(draws, size.x);
-            (Vec2::new(u, at(draws, size.y)), size)
+            let u = share(draws, size.x);
+            (Vec2::new(u, share(draws, size.y)), size)
         })
         .benign(1e-4)
         .build(),

@@ -129,7 +129,7 @@ fn table_is_current() {
     for (name, index) in [("BK7", 1.5168), ("quartz", 1.54428), ("corundum", 1.76817), ("diamond", 2.41749)] {
         for (side, index) in [("in", index), ("out", 1.0 / index)] {
             let steps = 20_000;
-            let (mut most, mut at, mut exact_mean, mut schlick_mean) = (0.0f64, 0.0, 0.0, 0.0);
+            let (mut most, mut angle, mut exact_mean, mut schlick_mean) = (0.0f64, 0.0, 0.0, 0.0);
             for i in 0..steps {
                 // Uniform in cos², the measure of diffuse light.
                 let cosine = ((f64::from(i) + 0.5) / f64::from(steps)).sqrt();
@@ -137,12 +137,12 @@ fn table_is_current() {
                 exact_mean += exact / f64::from(steps);
                 schlick_mean += approximate / f64::from(steps);
                 if (approximate - exact).abs() > most.abs() {
-                    (most, at) = (approximate - exact, cosine.acos().to_degrees());
+                    (most, angle) = (approximate - exact, cosine.acos().to_degrees());
                 }
             }
             let normal = oracle::normal_incidence(index);
             table += &format!(
-                "| {name}, {side} | {index:.4} | {normal:.4} | {most:+.3} at {at:.1}° | {exact_mean:.4} | {schlick_mean:.4} |\n"
+                "| {name}, {side} | {index:.4} | {normal:.4} | {most:+.3} at {angle:.1}° | {exact_mean:.4} | {schlick_mean:.4} |\n"
             );
         }
     }

@@ -34,7 +34,7 @@ pub(crate) fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) 
     (0..count as u32)
         .map(|index| {
             let middle = low + half * (2.0 * f64::from(index) + 1.0);
-            half * GAUSS.iter().map(|(at, weight)| weight * f(middle + half * at)).sum::<f64>()
+            half * GAUSS.iter().map(|(node, weight)| weight * f(middle + half * node)).sum::<f64>()
         })
         .sum()
 }

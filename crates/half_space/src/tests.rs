@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 fn nodes(low: f64, high: f64, panels: u32) -> Vec<(f64, f64)> {
     let half = 0.5 / f64::from(panels);
     let panel = |index: u32| {
-        oracle::GAUSS.map(|(at, weight)| {
-            let u = half * (2.0 * f64::from(index) + 1.0 + at);
+        oracle::GAUSS.map(|(node, weight)| {
+            let u = half * (2.0 * f64::from(index) + 1.0 + node);
             (low + (high - low) * u * u, 2.0 * (high - low) * u * half * weight)
         })
     };

@@ -38,8 +38,8 @@ fn over_facets(alpha: f64, count: u32, integrand: impl Fn(DVec3) -> f64) -> f64 
         let angle = tangent.atan();
         // d(angle) / du, then du / dw.
         let stretch = (alpha * angle.cos() / above).powi(2) / (2.0 * tangent) * 6.0 * w * (1.0 - w);
-        let at = |azimuth: f64| DVec3::new(angle.sin() * azimuth.cos(), angle.sin() * azimuth.sin(), angle.cos());
-        stretch * angle.sin() * midpoints().map(|turn| integrand(at(PI * turn))).sum::<f64>()
+        let toward = |azimuth: f64| DVec3::new(angle.sin() * azimuth.cos(), angle.sin() * azimuth.sin(), angle.cos());
+        stretch * angle.sin() * midpoints().map(|turn| integrand(toward(PI * turn))).sum::<f64>()
     };
     2.0 * PI * step * step * midpoints().map(ring).sum::<f64>()
 }
@@ -95,9 +95,9 @@ fn masking_and_shadowing_are_correlated_by_height() {
     let inverse = |light: f64, eye: f64, alpha| 1.0 / (4.0 * light * eye * oracle::visibility(light, eye, alpha));
     for alpha in ALPHAS {
         for (light, eye) in [(0.9, 0.8), (0.5, 0.1), (0.01, 0.02), (1.0, 0.3)] {
-            let apart = inverse(1.0, eye, alpha) + inverse(light, 1.0, alpha) - 1.0;
+            let expected = inverse(1.0, eye, alpha) + inverse(light, 1.0, alpha) - 1.0;
             let found = inverse(light, eye, alpha);
-            assert!((found - apart).abs() < 1e-12 * found, "{light} {eye} {alpha}: {found} {apart}");
+            assert!((found - expected).abs() < 1e-12 * found, "{light} {eye} {alpha}: {found} {expected}");
         }
     }
 }
@@ -128,13 +128,13 @@ fn light_and_eye_may_change_places() {
     for index in 0..20_000u32 {
         // Two directions and a width from Roberts' sequence in five dimensions, which generalizes
         // the golden ratio.
-        let at = |power: i32| (f64::from(index) * 1.167_304_f64.powi(-power)).fract();
+        let coordinate = |power: i32| (f64::from(index) * 1.167_304_f64.powi(-power)).fract();
         let toward = |turn: f64, cosine: f64| {
             let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
             DVec3::new(sine * (2.0 * PI * turn).cos(), sine * (2.0 * PI * turn).sin(), cosine).as_vec3()
         };
-        let [light, eye] = [toward(at(1), at(2)), toward(at(3), at(4))];
-        let alpha = at(5) as f32;
+        let [light, eye] = [toward(coordinate(1), coordinate(2)), toward(coordinate(3), coordinate(4))];
+        let alpha = coordinate(5) as f32;
         let there = reflectance(Vec3::Z, light, eye, alpha, 0.04) * eye.z;
         let back = reflectance(Vec3::Z, eye, light, alpha, 0.04) * light.z;
         assert!((there - back).abs() <= 1e-6 * there, "{light} {eye} {alpha}: {there} {back}");

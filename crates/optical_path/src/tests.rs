@@ -74,10 +74,10 @@ fn dijkstra_measures_the_stencils() {
     // Along the diagonal of the cube and of a face.
     for (stencil, cube, face) in [(6, 3.0, 2.0), (18, 1.5 * 2f64.sqrt(), 2f64.sqrt()), (26, 3f64.sqrt(), 2f64.sqrt())] {
         let costs = oracle::dijkstra(&body, stencil, &seeds);
-        let at = |x: usize, y: usize, z: usize| costs[x + 16 * (y + 16 * z)] / 0.5;
-        assert!((at(15, 0, 0) - 15.0).abs() < 1e-6);
-        assert!((at(0, 14, 14) - 14.0 * face).abs() < 1e-5, "{stencil}");
-        assert!((at(14, 14, 14) - 14.0 * cube).abs() < 1e-5, "{stencil}");
+        let cost_at = |x: usize, y: usize, z: usize| costs[x + 16 * (y + 16 * z)] / 0.5;
+        assert!((cost_at(15, 0, 0) - 15.0).abs() < 1e-6);
+        assert!((cost_at(0, 14, 14) - 14.0 * face).abs() < 1e-5, "{stencil}");
+        assert!((cost_at(14, 14, 14) - 14.0 * cube).abs() < 1e-5, "{stencil}");
     }
 }
 

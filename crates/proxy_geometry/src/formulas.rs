@@ -52,17 +52,17 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let size = f64::from(size(draws, -95, 95));
     let (first, second) = edges(draws, -19, 6);
     let corner = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
-    let at = |corner: DVec3| [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3());
+    let triangle_at = |corner: DVec3| [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3());
     // Away from the origin, rounding of the positions can turn a thin triangle about its long side,
     // or flatten it. Such a triangle is kept if it turns by less than a hundredth of a radian.
-    let shifted = at(corner);
+    let shifted = triangle_at(corner);
     let farthest = shifted.map(|vertex| f64::from(vertex.abs().max_element())).into_iter().fold(0.0, f64::max);
     let shortest = shifted[0]
         .as_dvec3()
         .distance(shifted[1].as_dvec3())
         .min(shifted[0].as_dvec3().distance(shifted[2].as_dvec3()));
     let turn = f64::from(f32::EPSILON) * farthest / (shortest * thinness(shifted));
-    if turn < 0.01 { shifted } else { at(DVec3::ZERO) }
+    if turn < 0.01 { shifted } else { triangle_at(DVec3::ZERO) }
 }
 
 /// Draws a triangle with two corners close together and near the origin, and one far from both, in
@@ -81,9 +81,9 @@ fn far_corner(draws: &mut Draws<'_>) -> [Vec3; 3] {
 
 /// Returns the sine of the angle between the two shortest edges, in f64.
 fn widest_sine([a, b, c]: [Vec3; 3]) -> f64 {
-    let sines = [[a, b, c], [b, c, a], [c, a, b]].map(|[at, next, last]| {
+    let sines = [[a, b, c], [b, c, a], [c, a, b]].map(|[corner, next, last]| {
         let opposite = next.as_dvec3().distance(last.as_dvec3());
-        (opposite, thinness([at, next, last]))
+        (opposite, thinness([corner, next, last]))
     });
     let [(_, sine), ..] = {
         let mut sorted = sines;
@@ -518,9 +518,9 @@ fn lattice_formulas() -> Vec<Formula> {
         .build(),
         formula(M, "proxy_geometry_coordinates_naive", mirror::coordinates_naive, oracle::coordinates, |draws| {
             let (first, second) = edges(draws, -1, 1);
-            let at = Vec2::new(draws.between(0.5, 3.0), draws.between(0.5, 3.0)).as_dvec2();
+            let weights = Vec2::new(draws.between(0.5, 3.0), draws.between(0.5, 3.0)).as_dvec2();
             let origin = draws.in_cube();
-            (origin + (at.x * first + at.y * second).as_vec3(), origin, first.as_vec3(), second.as_vec3())
+            (origin + (weights.x * first + weights.y * second).as_vec3(), origin, first.as_vec3(), second.as_vec3())
         })
         .benign(2e-4)
         .build(),
@@ -538,19 +538,19 @@ fn lattice_formulas() -> Vec<Formula> {
                 Vec2::new(first, coordinate(draws))
             },)
         })
-        .invariant("a diagonal belongs to the half that is not turned", |(at,), cell: ProxyGeometryCell| {
-            let is_exact = 8.0 * at == (8.0 * at).floor() && at.abs().max_element() < 1e4;
-            let fails = is_exact && (at - at.floor()).element_sum() == 1.0 && cell.turned;
+        .invariant("a diagonal belongs to the half that is not turned", |(place,), cell: ProxyGeometryCell| {
+            let is_exact = 8.0 * place == (8.0 * place).floor() && place.abs().max_element() < 1e4;
+            let fails = is_exact && (place - place.floor()).element_sum() == 1.0 && cell.turned;
             if fails { Err("turned".to_owned()) } else { Ok(()) }
         })
-        .edge("not turned", |(at,)| !mirror::cell(at).turned)
-        .edge("turned", |(at,)| mirror::cell(at).turned)
-        .edge("on a vertex", |(at,)| at == at.floor())
-        .edge("on an edge", |(at,)| at.x == at.x.floor() && at.y != at.y.floor())
-        .edge("on a diagonal", |(at,)| (at - at.floor()).element_sum() == 1.0)
-        .edge("just below 0", |(at,)| at.x < 0.0 && at.x > -1e-6)
-        .edge("negative steps", |(at,)| at.x < -1.0 && at.y < -1.0)
-        .edge("a million cells away", |(at,)| at.x.abs() > 1e6)
+        .edge("not turned", |(place,)| !mirror::cell(place).turned)
+        .edge("turned", |(place,)| mirror::cell(place).turned)
+        .edge("on a vertex", |(place,)| place == place.floor())
+        .edge("on an edge", |(place,)| place.x == place.x.floor() && place.y != place.y.floor())
+        .edge("on a diagonal", |(place,)| (place - place.floor()).element_sum() == 1.0)
+        .edge("just below 0", |(place,)| place.x < 0.0 && place.x > -1e-6)
+        .edge("negative steps", |(place,)| place.x < -1.0 && place.y < -1.0)
+        .edge("a million cells away", |(place,)| place.x.abs() > 1e6)
         .hard_case(
             "beside a vertex, where a fraction rounds to 1",
             (Vec2::new(-7.450_581e-9, 1.490_116_1e-8),),

@@ -68,9 +68,9 @@ pub fn plane(
 /// then completes a right-handed frame.
 pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third: DVec3) -> DVec3 {
     let corners = [position_first, position_second, position_third];
-    let edges = |at: usize| [1, 2].map(|step| (corners[(at + step) % 3] - corners[at]).normalize_or_zero());
-    let cosine = |at: usize| {
-        let [one, other] = edges(at);
+    let edges = |corner: usize| [1, 2].map(|step| (corners[(corner + step) % 3] - corners[corner]).normalize_or_zero());
+    let cosine = |corner: usize| {
+        let [one, other] = edges(corner);
         one.dot(other)
     };
     let widest = (0..3).min_by(|one, other| cosine(*one).total_cmp(&cosine(*other))).unwrap_or(0);

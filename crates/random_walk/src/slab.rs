@@ -64,7 +64,7 @@ pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -
     let mut position = Vec3::ZERO;
     let mut direction = Vec3::new(sine, 0.0, -slab.entry_cosine);
     let mut scatterings = 0;
-    let mut apart = f32::INFINITY;
+    let mut margin = f32::INFINITY;
     let ended = |outcome, scatterings, cosine, place| SlabExit { outcome, scatterings, cosine, place };
     let first = random(UVec4::new(slab.seed, walk, 0, 0));
     let entry = boundary(direction, Vec3::Z, slab.relative_index, first.x);
@@ -80,7 +80,7 @@ pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -
         let way = ((face - position.z) / if upwards { direction.z } else { direction.z.min(-1e-20) }).max(0.0);
         let free = free_path(u.x, majorant);
         // A horizontal direction may lead to either face.
-        apart = apart.min((free - way).abs() * majorant).min(direction.z.abs());
+        margin = margin.min((free - way).abs() * majorant).min(direction.z.abs());
         if free >= way {
             position = (position.xy() + way * direction.xy()).extend(face);
             let inwards = Vec3::new(0.0, 0.0, if upwards { -1.0 } else { 1.0 });
@@ -89,7 +89,7 @@ pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -
             direction = crossing.direction;
             if crossing.crosses {
                 let outcome = if upwards { REFLECTED } else { TRANSMITTED };
-                return (ended(outcome, scatterings, direction.z.abs(), position.x), sure && apart > slack);
+                return (ended(outcome, scatterings, direction.z.abs(), position.x), sure && margin > slack);
             }
             continue;
         }
@@ -98,15 +98,15 @@ pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -
         let event = collision(u.y, density * slab.scattering, density * slab.absorption, majorant);
         let extinction = density * (slab.scattering + slab.absorption);
         for threshold in [density * slab.scattering, extinction] {
-            apart = apart.min((u.y - threshold / majorant).abs());
+            margin = margin.min((u.y - threshold / majorant).abs());
         }
         if event == RANDOM_WALK_ABSORBED {
-            return (ended(ABSORBED, scatterings, 0.0, position.x), sure && apart > slack);
+            return (ended(ABSORBED, scatterings, 0.0, position.x), sure && margin > slack);
         }
         if event == RANDOM_WALK_SCATTERED {
             scatterings += 1;
             direction = turn(direction, deflection(u.z, slab.anisotropy), azimuth(u.w));
         }
     }
-    (ended(UNFINISHED, scatterings, 0.0, position.x), sure && apart > slack)
+    (ended(UNFINISHED, scatterings, 0.0, position.x), sure && margin > slack)
 }

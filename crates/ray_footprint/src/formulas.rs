@@ -204,7 +204,7 @@ fn mixed(draws: &mut Draws<'_>) -> Mixed {
         1 => Vec4::splat(size),
         _ => size * Vec4::from_array([0, 1, 2, 3].map(|_| draws.between(0.001, 1.0))),
     };
-    let [own, right, left, below, above] = [0, 1, 2, 3, 4].map(|_| pixel(draws));
+    let [centre, right, left, below, above] = [0, 1, 2, 3, 4].map(|_| pixel(draws));
     let whole = if draws.below(6) == 0 { 1.0 } else { draws.between(0.01, 1.0) };
     // One neighbour, two, or all.
     let parts = match draws.below(4) {
@@ -213,7 +213,7 @@ fn mixed(draws: &mut Draws<'_>) -> Mixed {
         2 => [0.0; 4],
         _ => [0.25, 0.25, 0.125, 0.375],
     };
-    (own, right, left, below, above, whole * Vec4::from_array(parts))
+    (centre, right, left, below, above, whole * Vec4::from_array(parts))
 }
 
 fn mix_formula() -> Formula {
@@ -221,15 +221,18 @@ fn mix_formula() -> Formula {
         .edge("no shares", |(.., shares): Mixed| shares == Vec4::ZERO)
         .edge("nothing of its own", |(.., shares): Mixed| shares.element_sum() == 1.0)
         .edge("one neighbour", |(.., shares): Mixed| shares.x > 0.0 && shares.x == shares.element_sum())
-        .edge("a black pixel", |(own, .., shares): Mixed| own == Vec4::ZERO && shares != Vec4::ZERO)
-        .invariant("it lies between the five, but for rounding", |(own, right, left, below, above, _), pixel: Vec4| {
-            let others = [right, left, below, above];
-            let least = others.into_iter().fold(own, Vec4::min);
-            let most = others.into_iter().fold(own, Vec4::max);
-            let give = 8.0 * f32::EPSILON * most;
-            let within = pixel.cmpge(least - give).all() && pixel.cmple(most + give).all();
-            if within { Ok(()) } else { Err(format!("{pixel} of {least} to {most}")) }
-        })
+        .edge("a black pixel", |(centre, .., shares): Mixed| centre == Vec4::ZERO && shares != Vec4::ZERO)
+        .invariant(
+            "it lies between the five, but for rounding",
+            |(centre, right, left, below, above, _), pixel: Vec4| {
+                let others = [right, left, below, above];
+                let least = others.into_iter().fold(centre, Vec4::min);
+                let most = others.into_iter().fold(centre, Vec4::max);
+                let give = 8.0 * f32::EPSILON * most;
+                let within = pixel.cmpge(least - give).all() && pixel.cmple(most + give).all();
+                if within { Ok(()) } else { Err(format!("{pixel} of {least} to {most}")) }
+            },
+        )
         .build()
 }
 
@@ -279,8 +282,8 @@ fn promises() -> Vec<Promise> {
             "ray_footprint_mix",
             "where shares add up to more than 1, the pixel itself counts below 0",
             |draws| {
-                let own = Vec4::splat(draws.between(0.5, 1.0));
-                (own, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::splat(draws.between(0.3, 1.0)))
+                let centre = Vec4::splat(draws.between(0.5, 1.0));
+                (centre, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::splat(draws.between(0.3, 1.0)))
             },
             |_: Mixed, pixel: Vec4| that(pixel.max_element() < 0.0, || format!("{pixel}")),
         ),

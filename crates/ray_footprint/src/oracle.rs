@@ -51,7 +51,7 @@ pub fn neighbours(edge: DVec3, share: f64) -> DVec4 {
 }
 
 /// The pixel, moved towards each neighbour by its share of their difference.
-pub fn mix(own: DVec4, right: DVec4, left: DVec4, below: DVec4, above: DVec4, shares: DVec4) -> DVec4 {
+pub fn mix(centre: DVec4, right: DVec4, left: DVec4, below: DVec4, above: DVec4, shares: DVec4) -> DVec4 {
     let neighbours = [right, left, below, above];
-    own + neighbours.into_iter().zip(shares.to_array()).map(|(other, share)| share * (other - own)).sum::<DVec4>()
+    centre + neighbours.into_iter().zip(shares.to_array()).map(|(other, share)| share * (other - centre)).sum::<DVec4>()
 }

@@ -106,11 +106,11 @@ fn step(draws: &mut Draws<'_>) -> (f32, f32, f32, f32) {
 /// Draws a step of a ray and the surface at both of its ends.
 fn crossed(draws: &mut Draws<'_>) -> (f32, f32, f32, f32) {
     let before = draws.magnitude(-18, 17);
-    let apart = draws.magnitude(-10, 2);
+    let difference = draws.magnitude(-10, 2);
     let surface_before = match draws.below(4) {
-        0 => before * (1.0 + apart),
+        0 => before * (1.0 + difference),
         1 => 0.0,
-        _ => before / (1.0 + apart),
+        _ => before / (1.0 + difference),
     };
     let here = before * draws.between(0.5, 2.0);
     let surface = match draws.below(4) {

@@ -117,8 +117,8 @@ fn cells() -> Vec<Formula> {
         formula(M, "veins_corner", mirror::corner, oracle::corner, |draws| {
             let offset = Vec3::new(draws.between(0.0, 1.0), draws.between(0.0, 1.0), draws.between(0.0, 1.0));
             let number = draws.below(8);
-            let at = UVec3::new(number & 1, number >> 1 & 1, number >> 2).as_ivec3();
-            (VeinsCell { corner: corner(draws), offset }, at, seed(draws))
+            let vertex = UVec3::new(number & 1, number >> 1 & 1, number >> 2).as_ivec3();
+            (VeinsCell { corner: corner(draws), offset }, vertex, seed(draws))
         })
         .invariant("within [-2, 2]", |_, value: f32| near("value", value.into(), 0.0, 2.0))
         .build(),

@@ -86,12 +86,12 @@ fn weight(t: f64) -> f64 {
 pub fn noise(position: DVec3, seed: u32) -> f64 {
     let cell = cell(position);
     let part = |number: i32| {
-        let at = IVec3::new(number & 1, number >> 1 & 1, number >> 2);
+        let vertex = IVec3::new(number & 1, number >> 1 & 1, number >> 2);
         let weights = (0..3).map(|axis| {
             let towards = weight(cell.offset[axis]);
-            if at[axis] == 1 { towards } else { 1.0 - towards }
+            if vertex[axis] == 1 { towards } else { 1.0 - towards }
         });
-        weights.product::<f64>() * corner(cell, at, seed)
+        weights.product::<f64>() * corner(cell, vertex, seed)
     };
     (0..8).map(part).sum()
 }

@@ -9,17 +9,18 @@ use lapidary_assay::extremum::larger;
 fn value_slope_and_curvature_go_on_across_borders() {
     for k in 0..200u32 {
         let along = f64::from(k) * 0.137;
-        let at = |x: f64| oracle::noise(DVec3::new(x, 0.3 + along, 7.7 - along), 5);
+        let value = |x: f64| oracle::noise(DVec3::new(x, 0.3 + along, 7.7 - along), 5);
         let step = 1e-4;
         // One-sided differences of second order, on either side of x = 3.
         let slope = |side: f64| {
-            (-3.0 * at(3.0 + side * 1e-12) + 4.0 * at(3.0 + side * step) - at(3.0 + 2.0 * side * step))
+            (-3.0 * value(3.0 + side * 1e-12) + 4.0 * value(3.0 + side * step) - value(3.0 + 2.0 * side * step))
                 / (2.0 * side * step)
         };
         let bend = |side: f64| {
-            (at(3.0 + side * 1e-12) - 2.0 * at(3.0 + side * step) + at(3.0 + 2.0 * side * step)) / (step * step)
+            (value(3.0 + side * 1e-12) - 2.0 * value(3.0 + side * step) + value(3.0 + 2.0 * side * step))
+                / (step * step)
         };
-        assert!((at(3.0 - 1e-12) - at(3.0 + 1e-12)).abs() < 1e-10);
+        assert!((value(3.0 - 1e-12) - value(3.0 + 1e-12)).abs() < 1e-10);
         assert!((slope(1.0) - slope(-1.0)).abs() < 1e-5, "{along}: {} {}", slope(1.0), slope(-1.0));
         assert!((bend(1.0) - bend(-1.0)).abs() < 0.05, "{along}: {} {}", bend(1.0), bend(-1.0));
     }

@@ -125,9 +125,9 @@ fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
         4 => {
             let (a, b, c) = (draws.in_cube(), draws.in_cube(), draws.in_cube());
             let share = Vec3::new(draws.between(0.0, 1.0), draws.between(0.0, 1.0), draws.between(0.0, 1.0));
-            let at = (share.x * a + share.y * b + share.z * c) / share.element_sum().max(0.1);
-            let [a, b, c, at] = [a, b, c, at].map(|corner| mirror::VOXELIZATION_REACH * corner);
-            return (a, b, c, Vec2::new(at.y, at.z));
+            let position = (share.x * a + share.y * b + share.z * c) / share.element_sum().max(0.1);
+            let [a, b, c, position] = [a, b, c, position].map(|corner| mirror::VOXELIZATION_REACH * corner);
+            return (a, b, c, Vec2::new(position.y, position.z));
         }
         aimed => aimed,
     };
@@ -143,8 +143,8 @@ fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
         }
     };
     let [p, q, r] = [a, b, c].map(Vec3::as_dvec3);
-    let at = (p + v * (q - p) + w * (r - p)).as_vec3();
-    (a, b, c, Vec2::new(at.y, at.z))
+    let position = (p + v * (q - p) + w * (r - p)).as_vec3();
+    (a, b, c, Vec2::new(position.y, position.z))
 }
 
 /// Draws a triangle and a column: away from edges, or with coordinates from `step` and an area as
@@ -154,10 +154,10 @@ fn benign_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
         // Small triangles, so that areas are small too.
         let scale = draws.pick(&[1.0, 1.0 / 16.0]);
         let (a, b, c) = (scale * steps(draws), scale * steps(draws), scale * steps(draws));
-        let at = scale * Vec2::new(step(draws), step(draws));
+        let column = scale * Vec2::new(step(draws), step(draws));
         let flat = |v: Vec3| Vec2::new(v.y, v.z);
         if flat(b - a).perp_dot(flat(c - a)) != 0.0 && a.min_element() > 0.0 && b.x > 0.0 && c.x > 0.0 {
-            return (a, b, c, at);
+            return (a, b, c, column);
         }
     }
     let mut corner = |y: f32, z: f32| Vec3::new(draws.between(1.0, 2.0), y, z);
@@ -287,9 +287,11 @@ fn column_formulas() -> Vec<Formula> {
             };
             (Vec2::new(coordinate(), coordinate()),)
         })
-        .edge("between two points", |(at,)| (mirror::VOXELIZATION_LATTICE * at).fract().abs().max_element() == 0.5)
-        .edge("before the origin", |(at,)| at.max_element() < 0.0)
-        .edge("a hundred voxels away", |(at,)| at.abs().min_element() > 100.0)
+        .edge("between two points", |(position,)| {
+            (mirror::VOXELIZATION_LATTICE * position).fract().abs().max_element() == 0.5
+        })
+        .edge("before the origin", |(position,)| position.max_element() < 0.0)
+        .edge("a hundred voxels away", |(position,)| position.abs().min_element() > 100.0)
         .build(),
         formula(M, "voxelization_cross", mirror::cross, oracle::cross, |draws| (point(draws), point(draws)))
             .edge("negative and small", |(p, q)| mirror::cross(p, q).high == -1)
@@ -321,21 +323,21 @@ fn column_formulas() -> Vec<Formula> {
             )
             .build(),
         formula(M, "voxelization_column", mirror::column, oracle::column, column_case)
-            .edge("inside", |(a, b, c, at)| mirror::column(a, b, c, at).inside)
-            .edge("outside", |(a, b, c, at)| !mirror::column(a, b, c, at).inside)
-            .edge("at a corner", |(a, _, _, at)| a.y == at.x && a.z == at.y)
+            .edge("inside", |(a, b, c, column)| mirror::column(a, b, c, column).inside)
+            .edge("outside", |(a, b, c, column)| !mirror::column(a, b, c, column).inside)
+            .edge("at a corner", |(a, _, _, column)| a.y == column.x && a.z == column.y)
             .edge("seen edge-on", |(a, b, c, _)| {
                 let (p, q) = (b - a, c - a);
                 p.y * q.z == p.z * q.y && p.y != q.y
             })
-            .edge("across x", |(a, b, c, at)| a.x == b.x && b.x == c.x && mirror::column(a, b, c, at).inside)
-            .edge("of a few points, inside", |(a, b, c, at)| {
+            .edge("across x", |(a, b, c, column)| a.x == b.x && b.x == c.x && mirror::column(a, b, c, column).inside)
+            .edge("of a few points, inside", |(a, b, c, column)| {
                 let size = a.max(b).max(c) - a.min(b).min(c);
-                size.y.max(size.z) < 1e-3 && mirror::column(a, b, c, at).inside
+                size.y.max(size.z) < 1e-3 && mirror::column(a, b, c, column).inside
             })
-            .edge("as wide as the lattice, inside", |(a, b, c, at)| {
+            .edge("as wide as the lattice, inside", |(a, b, c, column)| {
                 let size = a.max(b).max(c) - a.min(b).min(c);
-                size.y.min(size.z) > mirror::VOXELIZATION_REACH && mirror::column(a, b, c, at).inside
+                size.y.min(size.z) > mirror::VOXELIZATION_REACH && mirror::column(a, b, c, column).inside
             })
             .invariant("the depth is the triangle's", |(a, b, c, _), found: VoxelizationColumn| {
                 let extent = a.x.min(b.x).min(c.x)..=a.x.max(b.x).max(c.x);
@@ -343,7 +345,7 @@ fn column_formulas() -> Vec<Formula> {
             })
             .pair(
                 "the corners may be named in any order",
-                |(a, b, c, at)| (c, b, a, at),
+                |(a, b, c, column)| (c, b, a, column),
                 |(a, b, c, _), one: VoxelizationColumn, other: VoxelizationColumn| {
                     // Errors of three weights, of the products and their sum, of the sum of the
                     // weights and of the quotient, in either order.

@@ -111,8 +111,8 @@ fn across(point: DVec3) -> DVec2 {
 /// Decides by the edges beside the column, each with its lower end and without its upper end. Ties
 /// count as if the column lay a little higher in z, and in y by less than that.
 pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
-    let at = lattice(column);
-    let corners = [a, b, c].map(|corner| (lattice(across(corner)) - at, corner.x));
+    let origin = lattice(column);
+    let corners = [a, b, c].map(|corner| (lattice(across(corner)) - origin, corner.x));
     let weight = |k: usize| whole_cross(corners[(k + 1) % 3].0, corners[(k + 2) % 3].0);
     let beside = |k: usize| {
         let (from, to) = (corners[(k + 1) % 3].0, corners[(k + 2) % 3].0);

@@ -34,12 +34,12 @@ fn every_column_is_crossed_an_even_number_of_times() {
     for sides in 3..60 {
         let radius = 0.1 * sides as f32;
         let mesh = bipyramid(sides, radius);
-        for at in columns(&mesh, 1.2 * radius) {
+        for place in columns(&mesh, 1.2 * radius) {
             let count = |test: fn(Vec3, Vec3, Vec3, Vec2) -> crate::VoxelizationColumn| {
-                mesh.iter().filter(|[a, b, c]| test(*a, *b, *c, at).inside).count()
+                mesh.iter().filter(|[a, b, c]| test(*a, *b, *c, place).inside).count()
             };
             let exact = count(column);
-            assert!(exact.is_multiple_of(2), "{sides} sides, column {at}: {exact}");
+            assert!(exact.is_multiple_of(2), "{sides} sides, column {place}: {exact}");
             met += usize::from(exact > 0);
             odd_naive += count(column_naive) % 2;
         }
@@ -69,9 +69,9 @@ fn flat_and_tiny_triangles_leak_nowhere() {
                 (0..12).map(|_| Vec3::from([0.0; 3].map(|_| step * (draws.below(count) as f32 - 1.0)))).collect();
             let mesh = tetrahedra(&corners);
             let mut half = || draws.below(2 * count) as f32 / 2.0 - 1.0;
-            let at = step * Vec2::new(half(), half());
-            let crossed = mesh.iter().filter(|[a, b, c]| column(*a, *b, *c, at).inside).count();
-            assert!(crossed.is_multiple_of(2), "{corners:?}, column {at}: {crossed}");
+            let place = step * Vec2::new(half(), half());
+            let crossed = mesh.iter().filter(|[a, b, c]| column(*a, *b, *c, place).inside).count();
+            assert!(crossed.is_multiple_of(2), "{corners:?}, column {place}: {crossed}");
             met += usize::from(crossed > 0);
             let area = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).x;
             flat += mesh.iter().filter(|triangle| area(triangle) == 0.0).count();

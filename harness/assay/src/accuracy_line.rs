@@ -77,10 +77,10 @@ impl Accuracy {
             let named = line.strip_prefix("fn ").and_then(|rest| rest.split('(').next());
             named.is_some_and(|found| found.trim() == name)
         };
-        let at =
+        let place =
             lines.iter().position(is_function).ok_or_else(|| format!("{name}: the source has no such function"))?;
-        let start = lines[..at].iter().rposition(|line| !line.starts_with("//")).map_or(0, |line| line + 1);
-        let comment: Vec<&str> = lines[start..at].iter().map(|line| line.trim_start_matches('/').trim()).collect();
+        let start = lines[..place].iter().rposition(|line| !line.starts_with("//")).map_or(0, |line| line + 1);
+        let comment: Vec<&str> = lines[start..place].iter().map(|line| line.trim_start_matches('/').trim()).collect();
         let comment = comment.join(" ");
         let (_, accuracy) = comment
             .split_once("Accuracy:")

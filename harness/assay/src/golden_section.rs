@@ -37,13 +37,13 @@ mod tests {
 
     #[test]
     fn a_minimum_is_found_inside_and_at_either_end() {
-        for at in [-1.0, -0.3, 0.0, 0.77, 1.0] {
+        for minimum in [-1.0, -0.3, 0.0, 0.77, 1.0] {
             let mut asked = 0;
             let Ok(found) = golden_section([-1.0, 1.0], 30, |x| {
                 asked += 1;
-                Ok::<f64, Infallible>((x - at).abs())
+                Ok::<f64, Infallible>((x - minimum).abs())
             });
-            assert!((found - at).abs() < 2e-6, "{at}: {found}");
+            assert!((found - minimum).abs() < 2e-6, "{minimum}: {found}");
             assert_eq!(asked, 32);
         }
     }

@@ -210,13 +210,13 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         if let Some((name, _)) = self.bounds.iter().find(|(name, _)| !bindings.iter().any(|b| b.name == *name)) {
             return Err(format!("within: the entry point uses no buffer `{name}`"));
         }
-        let of = |binding: &Binding| {
+        let tolerance_of = |binding: &Binding| {
             let stated = self.bounds.iter().find(|(name, _)| *name == binding.name);
             let Some((_, text)) = stated else { return Ok(None) };
             let bounds = bounds(text, binding).map_err(|fault| format!("within `{}`: {fault}", binding.name))?;
             Ok(Some(Tolerance::new(&[], &binding.ty.shape, &bounds)))
         };
-        bindings.iter().map(of).collect()
+        bindings.iter().map(tolerance_of).collect()
     }
 
     /// Returns the element with the largest error, or `None` if every element equals the mirror's.

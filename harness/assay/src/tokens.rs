@@ -67,21 +67,21 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
 /// Returns the length of the comment at the start, including nested comments.
 fn block_comment(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let (mut at, mut depth) = (0, 0);
-    while at < bytes.len() {
-        match bytes.get(at..at + 2) {
+    let (mut offset, mut depth) = (0, 0);
+    while offset < bytes.len() {
+        match bytes.get(offset..offset + 2) {
             Some(b"/*") => {
                 depth += 1;
-                at += 2;
+                offset += 2;
             }
             Some(b"*/") => {
                 depth -= 1;
-                at += 2;
+                offset += 2;
                 if depth == 0 {
-                    return at;
+                    return offset;
                 }
             }
-            _ => at += 1,
+            _ => offset += 1,
         }
     }
     bytes.len()
@@ -91,12 +91,12 @@ fn block_comment(text: &str) -> usize {
 fn number(text: &str) -> usize {
     let exponent: &[u8] = if text.starts_with("0x") || text.starts_with("0X") { b"pP" } else { b"eE" };
     let bytes = text.as_bytes();
-    let belongs = |at: usize| {
-        bytes[at].is_ascii_alphanumeric()
-            || bytes[at] == b'.'
-            || (matches!(bytes[at], b'+' | b'-') && exponent.contains(&bytes[at - 1]))
+    let belongs = |offset: usize| {
+        bytes[offset].is_ascii_alphanumeric()
+            || bytes[offset] == b'.'
+            || (matches!(bytes[offset], b'+' | b'-') && exponent.contains(&bytes[offset - 1]))
     };
-    1 + (1..bytes.len()).take_while(|at| belongs(*at)).count()
+    1 + (1..bytes.len()).take_while(|offset| belongs(*offset)).count()
 }
 
 /// A declaration at module scope.
@@ -144,9 +144,9 @@ pub fn items<'a>(tokens: &[Token<'a>]) -> Vec<Item<'a>> {
 fn item<'a>(tokens: &[Token<'a>]) -> Option<Item<'a>> {
     const KEYWORDS: [&str; 6] = ["fn", "struct", "const", "override", "var", "alias"];
     // An attribute may hold anything but a keyword.
-    let at = tokens.iter().position(|token| KEYWORDS.contains(&token.text))?;
-    let keyword = tokens[at];
-    let mut after = at + 1;
+    let start = tokens.iter().position(|token| KEYWORDS.contains(&token.text))?;
+    let keyword = tokens[start];
+    let mut after = start + 1;
     if keyword.text == "var" && tokens.get(after).is_some_and(|token| token.text == "<") {
         after += tokens[after..].iter().position(|token| token.text == ">")? + 1;
     }

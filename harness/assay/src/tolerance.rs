@@ -160,7 +160,7 @@ impl Tolerance {
     /// Returns the allowed error of each part of a result against the exact one, by the plain
     /// bounds.
     pub fn allowed(&self, exact: &[f64]) -> Vec<Allowed> {
-        let of = |(leaf, bound): &(Leaf, Bound)| {
+        let allowed_of = |(leaf, bound): &(Leaf, Bound)| {
             let scale = largest(&exact[leaf.start..leaf.start + leaf.length]);
             let allowed = match leaf.scalar {
                 Scalar::F32 => forward(bound, scale),
@@ -168,7 +168,7 @@ impl Tolerance {
             };
             Allowed { leaf: leaf.clone(), allowed, backward: bound.backward }
         };
-        self.results.iter().map(of).collect()
+        self.results.iter().map(allowed_of).collect()
     }
 
     /// Returns the ratio of a result's error to the allowed error, without the `backward`
@@ -191,8 +191,8 @@ impl Tolerance {
             let range = leaf.start..leaf.start + leaf.length;
             let scale = largest(&one[range.clone()]).max(largest(&other[range.clone()]));
             let allowed = forward(bound, scale).max(ulp_of(scale));
-            let apart = range.map(|index| (one[index] - other[index]).abs()).fold(0.0, f64::max);
-            (apart > 2.0 * allowed).then_some(apart)
+            let difference = range.map(|index| (one[index] - other[index]).abs()).fold(0.0, f64::max);
+            (difference > 2.0 * allowed).then_some(difference)
         });
         excess.reduce(f64::max)
     }

@@ -111,10 +111,10 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
             let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
             format!("({}) -> {result}", arguments.join(", "))
         };
-        let [mirrors, own] = [(A::shapes(), R::shape()), (EA::shapes(), ER::shape())];
-        if mirrors != own {
-            let [mirrors, own] = [spell(&mirrors), spell(&own)];
-            self.oracle_fault = Some(format!("the oracle is {own} with f64 for f32, the mirror {mirrors}"));
+        let [mirrors, oracles] = [(A::shapes(), R::shape()), (EA::shapes(), ER::shape())];
+        if mirrors != oracles {
+            let [mirrors, oracles] = [spell(&mirrors), spell(&oracles)];
+            self.oracle_fault = Some(format!("the oracle is {oracles} with f64 for f32, the mirror {mirrors}"));
         }
         self.oracle = Box::new(move |mut numbers, result| oracle.call(EA::read(&mut numbers)).write(result));
         self

@@ -33,8 +33,8 @@ fn main() -> ExitCode {
 /// Returns the .glb with v counted from above.
 fn upright(bytes: &[u8]) -> Result<Vec<u8>, String> {
     let damaged = || "this is no .glb with a JSON and a binary chunk; give the converted scan".to_owned();
-    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
-    let chunk = |at: usize| bytes.get(at + 8..at + 8 + word(at)?);
+    let word = |offset: usize| Some(u32::from_le_bytes(*bytes.get(offset..)?.first_chunk()?) as usize);
+    let chunk = |offset: usize| bytes.get(offset + 8..offset + 8 + word(offset)?);
     let text = chunk(12).ok_or_else(damaged)?;
     let mut binary = chunk(20 + text.len()).ok_or_else(damaged)?.to_vec();
     let mut json: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;

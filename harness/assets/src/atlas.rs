@@ -60,8 +60,8 @@ pub fn unwrap(mesh: &Mesh, halo: f32) -> Mesh {
     let corners = |triangle: u32, chart: usize| {
         mesh.indices[3 * triangle as usize..][..3].iter().map(move |&vertex| (vertex, chart))
     };
-    let own = (0..).zip(&chart_of).flat_map(|(triangle, &chart)| corners(triangle, chart));
-    let indices = own.map(|(vertex, chart)| place(vertex, chart)).collect();
+    let chart_corners = (0..).zip(&chart_of).flat_map(|(triangle, &chart)| corners(triangle, chart));
+    let indices = chart_corners.map(|(vertex, chart)| place(vertex, chart)).collect();
     // The halos follow all other triangles, and share the chart's vertices where they can.
     let halos = charts
         .iter()

@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn negative_numbers_belong_to_the_option_before_them() {
-        let of = |line: &str| joined(line.split(' ').map(OsString::from)).join(std::ffi::OsStr::new(" "));
+        let rejoined = |line: &str| joined(line.split(' ').map(OsString::from)).join(std::ffi::OsStr::new(" "));
         for (line, expected) in [
             ("cook render ruby --seed -1", "cook render ruby --seed=-1"),
             ("cook render ruby --size -1x5 --json", "cook render ruby --size=-1x5 --json"),
@@ -61,7 +61,7 @@ mod tests {
             ("cook render -- -1", "cook render -- -1"),
             ("cook render --out --json -h", "cook render --out --json -h"),
         ] {
-            assert_eq!(of(line), expected);
+            assert_eq!(rejoined(line), expected);
         }
     }
 

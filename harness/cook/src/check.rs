@@ -415,14 +415,14 @@ fn filled(row: Row, formula: &Formula, found: Examination, (seed, reproduce): (u
 /// Formats the input for people: the shortest decimals that identify each f32 exactly, with vectors
 /// in parentheses.
 pub fn spell(formula: &Formula, words: &Words) -> String {
-    let mut at = 0;
+    let mut offset = 0;
     let mut arguments = Vec::new();
     for shape in &formula.arguments {
         let mut leaves = Vec::new();
         for leaf in shape.leaves() {
             let numbers: Vec<String> = words
                 .iter()
-                .skip(at + leaf.start)
+                .skip(offset + leaf.start)
                 .take(leaf.length)
                 .map(|word| match leaf.scalar {
                     Scalar::F32 => format!("{:?}", f32::from_bits(*word)),
@@ -433,7 +433,7 @@ pub fn spell(formula: &Formula, words: &Words) -> String {
                 .collect();
             leaves.push(if numbers.len() == 1 { numbers.concat() } else { format!("({})", numbers.join(", ")) });
         }
-        at += shape.words();
+        offset += shape.words();
         arguments.push(if leaves.len() == 1 { leaves.concat() } else { format!("{{{}}}", leaves.join(", ")) });
     }
     arguments.join(", ")

@@ -115,8 +115,8 @@ fn read(path: &Path) -> Result<Picture, CompareError> {
         let (column, row) = (place % size.0, place / size.0);
         return Err(CompareError::NotFinite { path: path.to_owned(), column, row, value: *value });
     }
-    let mapped = |of: fn(Vec3) -> Vec3| {
-        values.iter().map(|&[r, g, b, coverage]| of(Vec3::new(r, g, b)).extend(coverage).to_array()).collect()
+    let mapped = |conversion: fn(Vec3) -> Vec3| {
+        values.iter().map(|&[r, g, b, coverage]| conversion(Vec3::new(r, g, b)).extend(coverage).to_array()).collect()
     };
     let (linear, encoded): (Vec<[f32; 4]>, Vec<[f32; 4]>) = if is_linear {
         let encoded = mapped(|light| lapidary_srgb::encode_color(lapidary_srgb::tone_curve(light.max(Vec3::ZERO))));
@@ -133,9 +133,9 @@ mod tests {
     use super::*;
     use image::{Rgba, Rgba32FImage, RgbaImage};
 
-    fn exr(folder: &Path, name: &str, of: impl Fn(u32, u32) -> [f32; 4]) -> PathBuf {
+    fn exr(folder: &Path, name: &str, pixel_of: impl Fn(u32, u32) -> [f32; 4]) -> PathBuf {
         let path = folder.join(name);
-        Rgba32FImage::from_fn(16, 8, |x, y| Rgba(of(x, y))).save(&path).expect("an EXR");
+        Rgba32FImage::from_fn(16, 8, |x, y| Rgba(pixel_of(x, y))).save(&path).expect("an EXR");
         path
     }
 

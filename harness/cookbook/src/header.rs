@@ -64,16 +64,16 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
         return Err(fault(2, &format!("expected `// SPDX-License-Identifier: {LICENCE}`")));
     }
     let mut third = lines.next();
-    let mut at = 3;
+    let mut number = 3;
     let mut version = None;
     if let Some(release) = third.and_then(|line| line.strip_prefix("// Version: ")) {
         version = Some(release.to_owned());
         third = lines.next();
-        at = 4;
+        number = 4;
     }
     let source_line = third.and_then(|line| line.strip_prefix("// Source: "));
     let Some(source_line) = source_line.filter(|source| !source.trim().is_empty()) else {
-        return Err(fault(at, "expected `// Source: <paper, book or specification, with equation numbers>`"));
+        return Err(fault(number, "expected `// Source: <paper, book or specification, with equation numbers>`"));
     };
     // A source may continue up to an empty comment line or the end of the comment.
     let needs = ["requires:", "parts:", "compares:"];

@@ -161,8 +161,8 @@ pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
 /// Returns the same as [`without`], and keeps these functions even if no entry point reaches them.
 pub fn without_but(recipe: &Recipe, off: &[&str], wanted: &[&str]) -> Result<String, Fault> {
     let code = |line: &str| line.split("//").next().unwrap_or_default().trim().to_owned();
-    let own = cut_but(&recipe.own_text().join("\n"), off, wanted)?;
-    let lines: Vec<String> = own.lines().map(code).collect();
+    let remaining = cut_but(&recipe.own_text().join("\n"), off, wanted)?;
+    let lines: Vec<String> = remaining.lines().map(code).collect();
     let mut words: HashSet<&str> = lines.iter().flat_map(|line| words(line)).collect();
     words.extend(wanted);
     let is_used = |text: &str| {
@@ -175,7 +175,7 @@ pub fn without_but(recipe: &Recipe, off: &[&str], wanted: &[&str]) -> Result<Str
     let compared: Vec<&str> = recipe.compares().into_iter().filter(|name| is_used(naive(name))).collect();
     // A naive form uses its module.
     let required = recipe.requires().into_iter().filter(|name| is_used(source(name)) || compared.contains(name));
-    let last: Vec<&str> = compared.iter().map(|name| naive(name)).chain([own.as_str()]).collect();
+    let last: Vec<&str> = compared.iter().map(|name| naive(name)).chain([remaining.as_str()]).collect();
     let whole = lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n"));
     let made_of = ["// requires:", "// parts:", "// compares:"];
     let kept = whole.lines().filter(|line| !made_of.iter().any(|start| line.starts_with(start)));
@@ -231,8 +231,8 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
 pub fn idle_effects(source: &str) -> Result<Vec<String>, Fault> {
     let lines = lines(source)?;
     let is_idle = |effect: &String| {
-        let mut own = lines.iter().filter(|line| line.with.contains(effect));
-        own.all(|line| effect_of(line.text).is_some() || line.text.trim().is_empty())
+        let mut marked = lines.iter().filter(|line| line.with.contains(effect));
+        marked.all(|line| effect_of(line.text).is_some() || line.text.trim().is_empty())
     };
     Ok(effects(source).into_iter().filter(is_idle).collect())
 }

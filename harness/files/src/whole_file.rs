@@ -112,26 +112,26 @@ mod tests {
     #[test]
     fn links_are_followed_and_permissions_kept() {
         let folder = tempfile::tempdir().expect("a folder");
-        let at = |name: &str| folder.path().join(name);
-        std::fs::create_dir(at("far")).expect("a folder");
-        std::fs::write(at("far/old.txt"), "old").expect("a file");
-        std::fs::set_permissions(at("far/old.txt"), std::fs::Permissions::from_mode(0o640)).expect("set");
+        let path_of = |name: &str| folder.path().join(name);
+        std::fs::create_dir(path_of("far")).expect("a folder");
+        std::fs::write(path_of("far/old.txt"), "old").expect("a file");
+        std::fs::set_permissions(path_of("far/old.txt"), std::fs::Permissions::from_mode(0o640)).expect("set");
         // A chain of links, relative and absolute, and one link to a missing file.
-        symlink("far/old.txt", at("near")).expect("a link");
-        symlink(at("near"), at("nearer")).expect("a link");
-        symlink("far/new.txt", at("dangling")).expect("a link");
-        replace(&at("nearer"), b"new").expect("written");
-        replace(&at("dangling"), b"first").expect("written");
+        symlink("far/old.txt", path_of("near")).expect("a link");
+        symlink(path_of("near"), path_of("nearer")).expect("a link");
+        symlink("far/new.txt", path_of("dangling")).expect("a link");
+        replace(&path_of("nearer"), b"new").expect("written");
+        replace(&path_of("dangling"), b"first").expect("written");
         for link in ["near", "nearer", "dangling"] {
-            assert!(at(link).is_symlink(), "{link}");
+            assert!(path_of(link).is_symlink(), "{link}");
         }
-        let read = |name: &str| std::fs::read_to_string(at(name)).expect("a file");
+        let read = |name: &str| std::fs::read_to_string(path_of(name)).expect("a file");
         assert_eq!((read("far/old.txt").as_str(), read("far/new.txt").as_str()), ("new", "first"));
-        let mode = |name: &str| std::fs::metadata(at(name)).expect("a file").permissions().mode() & 0o777;
+        let mode = |name: &str| std::fs::metadata(path_of(name)).expect("a file").permissions().mode() & 0o777;
         assert_eq!(mode("far/old.txt"), 0o640);
-        assert_eq!(std::fs::read_dir(at("far")).expect("a folder").count(), 2);
-        symlink("circle", at("circle")).expect("a link");
-        let message = replace(&at("circle"), b"").expect_err("nowhere").to_string();
+        assert_eq!(std::fs::read_dir(path_of("far")).expect("a folder").count(), 2);
+        symlink("circle", path_of("circle")).expect("a link");
+        let message = replace(&path_of("circle"), b"").expect_err("nowhere").to_string();
         assert!(message.contains("circle: cannot be written: it is a link that leads back to itself"), "{message}");
     }
 

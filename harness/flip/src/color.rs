@@ -82,8 +82,8 @@ mod tests {
     use super::*;
 
     fn near(found: [f32; 3], expected: [f32; 3], most: f32) {
-        let apart = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
-        assert!(apart.fold(0.0, f32::max) <= most, "{found:?}, not {expected:?}");
+        let differences = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
+        assert!(differences.fold(0.0, f32::max) <= most, "{found:?}, not {expected:?}");
     }
 
     #[test]

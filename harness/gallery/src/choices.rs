@@ -54,7 +54,7 @@ impl Choice {
     /// Whether the rung is for what a label says.
     #[must_use]
     pub fn serves(&self, label: &str) -> bool {
-        self.qualities.iter().any(|of| of.name == label)
+        self.qualities.iter().any(|purpose| purpose.name == label)
     }
 }
 
@@ -141,7 +141,7 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
         let gpu = on_gpu.ms(&name).map(shown);
         Some(Choice {
             ladder: kind.name,
-            is_default: qualities.iter().any(|of| of.is_default),
+            is_default: qualities.iter().any(|purpose| purpose.is_default),
             qualities,
             error: format!("{:.2}", step.error),
             ms: shown(step.ms),
@@ -151,12 +151,14 @@ fn of_kind(kind: &'static Kind) -> Vec<Choice> {
             rung: name,
         })
     };
-    let of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
-    let mut choices: Vec<Choice> =
-        chosen.iter().filter_map(|(rung, qualities)| choice(*rung, qualities.iter().map(of).collect())).collect();
+    let purpose_of = |quality: &Quality| For { name: quality.name(), is_default: *quality == Quality::default() };
+    let mut choices: Vec<Choice> = chosen
+        .iter()
+        .filter_map(|(rung, qualities)| choice(*rung, qualities.iter().map(purpose_of).collect()))
+        .collect();
     let fast = kind.technique.rung(Quality::Fast);
     for (name, rung) in [(ON_A_GPU, better_on_gpu(kind, on_gpu, fast)), (IN_A_SIXTIETH, sixty::nearest(kind))] {
-        let Some(rung) = rung.filter(|rung| chosen.iter().all(|(of, _)| of != rung)) else { continue };
+        let Some(rung) = rung.filter(|rung| chosen.iter().all(|(taken, _)| taken != rung)) else { continue };
         let label = For { name, is_default: false };
         match choices.iter_mut().find(|choice| choice.rung == rung.to_string()) {
             Some(choice) => choice.qualities.push(label),
@@ -181,7 +183,7 @@ fn better_on_gpu(kind: &Kind, on_gpu: &OnGpu, rung: Rung) -> Option<Rung> {
 }
 
 fn gloss(measure: &str) -> &'static str {
-    GLOSSES.iter().find(|(of, _)| *of == measure).map_or("", |(_, gloss)| gloss)
+    GLOSSES.iter().find(|(glossed, _)| *glossed == measure).map_or("", |(_, gloss)| gloss)
 }
 
 fn timed((rung, ms): &(String, f64)) -> Timed {
@@ -197,31 +199,31 @@ mod tests {
     fn each_quality_of_each_ladder_is_in_one_choice_and_each_rung_too() {
         let all = all();
         for kind in &KINDS {
-            let of: Vec<&Choice> = all.iter().filter(|choice| choice.ladder == kind.name).collect();
-            let rungs: BTreeSet<&str> = of.iter().map(|choice| choice.rung.as_str()).collect();
-            assert_eq!(rungs.len(), of.len(), "{}: a rung stands there twice", kind.name);
+            let choices: Vec<&Choice> = all.iter().filter(|choice| choice.ladder == kind.name).collect();
+            let rungs: BTreeSet<&str> = choices.iter().map(|choice| choice.rung.as_str()).collect();
+            assert_eq!(rungs.len(), choices.len(), "{}: a rung stands there twice", kind.name);
             for quality in Quality::ALL {
                 let rung = kind.technique.rung(quality).to_string();
-                let choice = of.iter().find(|choice| choice.rung == rung).expect("the quality's rung");
-                assert!(choice.qualities.iter().any(|of| of.name == quality.name()), "{choice:?}");
+                let choice = choices.iter().find(|choice| choice.rung == rung).expect("the quality's rung");
+                assert!(choice.qualities.iter().any(|purpose| purpose.name == quality.name()), "{choice:?}");
                 assert!(quality != Quality::default() || choice.is_default, "{choice:?}");
             }
-            assert_eq!(of.iter().filter(|choice| choice.is_default).count(), 1, "{}", kind.name);
+            assert_eq!(choices.iter().filter(|choice| choice.is_default).count(), 1, "{}", kind.name);
         }
     }
 
     #[test]
     fn what_is_better_on_the_gpu_stands_below_fast() {
         let all = all();
-        let of = |choice: &Choice| choice.qualities.iter().map(|of| of.name).collect::<Vec<_>>();
+        let names_of = |choice: &Choice| choice.qualities.iter().map(|purpose| purpose.name).collect::<Vec<_>>();
         let below = |pair: &[Choice]| {
-            let [name] = of(&pair[1])[..] else { return None };
+            let [name] = names_of(&pair[1])[..] else { return None };
             let other = [ON_A_GPU, IN_A_SIXTIETH].contains(&name);
-            other.then(|| (of(&pair[0]), pair[0].rung.clone(), name, pair[1].rung.clone()))
+            other.then(|| (names_of(&pair[0]), pair[0].rung.clone(), name, pair[1].rung.clone()))
         };
         let found: Vec<_> = all.windows(2).filter_map(below).collect();
         let expected = [("walk-4", IN_A_SIXTIETH, "walk-8"), ("godunov-32", ON_A_GPU, "diffusion-32")];
-        assert_eq!(found, expected.map(|(of, name, rung)| (vec!["fast"], of.to_owned(), name, rung.to_owned())));
+        assert_eq!(found, expected.map(|(above, name, rung)| (vec!["fast"], above.to_owned(), name, rung.to_owned())));
     }
 
     #[test]

@@ -67,10 +67,10 @@ const TYPES: [&str; 10] =
 pub fn pieces(source: &str, language: Language) -> Vec<Piece<'_>> {
     let mut pieces = Vec::new();
     let mut declares = false;
-    let (mut at, mut plain) = (0, 0);
-    while at < source.len() {
-        let (length, class) = token(&source[at..]);
-        let text = &source[at..at + length];
+    let (mut position, mut plain) = (0, 0);
+    while position < source.len() {
+        let (length, class) = token(&source[position..]);
+        let text = &source[position..position + length];
         let class = match class {
             Some('i') if declares => Some('d'),
             Some('i') => word_class(text, language),
@@ -79,14 +79,14 @@ pub fn pieces(source: &str, language: Language) -> Vec<Piece<'_>> {
         if !text.trim().is_empty() && class != Some('c') {
             declares = matches!(text, "fn" | "struct" | "const" | "override" | "alias" | "enum");
         }
-        at += length;
+        position += length;
         if class.is_some() {
-            let start = at - length;
+            let start = position - length;
             if plain < start {
                 pieces.push(Piece { class: None, text: &source[plain..start] });
             }
             pieces.push(Piece { class, text });
-            plain = at;
+            plain = position;
         }
     }
     if plain < source.len() {

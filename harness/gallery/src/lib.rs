@@ -95,8 +95,8 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
     let shown = pictures::place(&site.pictures, adapter, folder)?;
     let (mut ladders, mut live) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = site.device {
-        for of in ladder::pictures(gpu, adapter, folder)? {
-            ladders.insert(of.kind.name.to_owned(), ladder::section(of.kind, &of.pictures, "../")?);
+        for pictured in ladder::pictures(gpu, adapter, folder)? {
+            ladders.insert(pictured.kind.name.to_owned(), ladder::section(pictured.kind, &pictured.pictures, "../")?);
         }
         live::write(folder, gpu)?;
         for scene in &live::SCENES {
@@ -123,8 +123,8 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
         rustdoc: site.rustdoc.is_some(),
     };
     let pages = pages::all(&parts);
-    for at in 0..pages.len() {
-        put(folder, &pages[at].path, pages::html(&parts, &pages, at).as_bytes())?;
+    for index in 0..pages.len() {
+        put(folder, &pages[index].path, pages::html(&parts, &pages, index).as_bytes())?;
     }
     for (name, bytes) in ASSETS {
         put(folder, &["assets/", name].concat(), bytes)?;
@@ -141,7 +141,7 @@ fn write_into(folder: &Path, site: &Site<'_>) -> Result<(), GalleryError> {
 fn short(adapter: &str) -> &str {
     let Some((name, _)) = adapter.split_once(" (") else { return adapter };
     let repeated = adapter.rfind(&["(", name, " "].concat());
-    repeated.map_or(adapter, |at| adapter[at + 1..].strip_suffix(')').unwrap_or(adapter))
+    repeated.map_or(adapter, |start| adapter[start + 1..].strip_suffix(')').unwrap_or(adapter))
 }
 
 /// Writes what pages load on demand: the sources and the index of the search.

@@ -76,9 +76,9 @@ fn declaration(source: &str, keyword: &str, name: &str) -> Option<String> {
     let mut lines = source.lines();
     let head = [keyword, name].concat();
     let starts = |line: &str| {
-        let after = line.find(&head).and_then(|at| {
-            let before = &line[..at];
-            (!before.starts_with([' ', '/'])).then(|| &line[at + head.len()..])
+        let after = line.find(&head).and_then(|offset| {
+            let before = &line[..offset];
+            (!before.starts_with([' ', '/'])).then(|| &line[offset + head.len()..])
         });
         after.is_some_and(|after| after.starts_with(['(', '<']))
     };
@@ -135,8 +135,8 @@ fn aligned(left: &str, right: &str) -> (String, String) {
             Some(true) => lone_right.push(other),
             Some(false) => lone_left.push(one),
             None => {
-                for at in 0..lone_left.len().max(lone_right.len()) {
-                    folded.push((lone_left.get(at).unwrap_or(&""), lone_right.get(at).unwrap_or(&"")));
+                for index in 0..lone_left.len().max(lone_right.len()) {
+                    folded.push((lone_left.get(index).unwrap_or(&""), lone_right.get(index).unwrap_or(&"")));
                 }
                 lone_left.clear();
                 lone_right.clear();

@@ -65,8 +65,8 @@ impl Parts<'_> {
     }
 
     /// Returns the scene of a technique's live page; `None` if there is none.
-    pub fn live_scene(&self, of: &Technique) -> Option<&'static str> {
-        self.live.iter().find(|live| live.scene == of.live).map(|live| live.scene)
+    pub fn live_scene(&self, technique: &Technique) -> Option<&'static str> {
+        self.live.iter().find(|live| live.scene == technique.live).map(|live| live.scene)
     }
 }
 
@@ -77,8 +77,8 @@ fn read(path: PathBuf) -> Result<String, GalleryError> {
 /// Reads the doc pages that no module holds.
 pub fn docs(root: &Path) -> Result<BTreeMap<String, String>, GalleryError> {
     let guides = GUIDES.iter().chain(&ENGINES).map(|guide| guide.file.to_owned());
-    let techniques = TECHNIQUES.iter().map(|of| ["docs/", of.doc, ".md"].concat());
-    let recipes = lapidary_wgsl::RECIPES.iter().map(|of| ["docs/recipes/", of.name, ".md"].concat());
+    let techniques = TECHNIQUES.iter().map(|technique| ["docs/", technique.doc, ".md"].concat());
+    let recipes = lapidary_wgsl::RECIPES.iter().map(|recipe| ["docs/recipes/", recipe.name, ".md"].concat());
     // A recipe may have no page: those for hosts alone have.
     let recipes = recipes.filter(|file| root.join(file).is_file());
     guides.chain(techniques).chain(recipes).map(|file| Ok((file.clone(), read(root.join(&file))?))).collect()

@@ -76,7 +76,7 @@ pub struct Shown {
 
 /// Returns the committed pictures, as their files stand in the repository.
 pub fn committed() -> Vec<Source> {
-    let of = |picture: Committed| {
+    let source_of = |picture: Committed| {
         let folder = picture.folder().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let file = picture.folder().join([picture.name(), ".png"].concat());
         Source {
@@ -91,12 +91,12 @@ pub fn committed() -> Vec<Source> {
             file,
         }
     };
-    Committed::all().map(of).collect()
+    Committed::all().map(source_of).collect()
 }
 
 /// Returns the titles and commands of the pictures by random walks, to be drawn from their committed radiance.
 pub fn walked(folder: &Path) -> Vec<Source> {
-    let of = |reference: &'static lapidary_snapshots::WalkedReference| {
+    let source_of = |reference: &'static lapidary_snapshots::WalkedReference| {
         Source {
         name: [&reference.name(), "_walked"].concat(),
         folder: reference.technique.to_owned(),
@@ -111,7 +111,7 @@ pub fn walked(folder: &Path) -> Vec<Source> {
         source: None,
     }
     };
-    WALKED.iter().map(of).collect()
+    WALKED.iter().map(source_of).collect()
 }
 
 /// Writes the pictures into the site's folder.

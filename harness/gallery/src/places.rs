@@ -58,8 +58,8 @@ impl Places {
     }
 
     /// Returns the links of a part of a file, whose whole is shown on that page.
-    pub fn of_part<'a>(&'a self, file: &'a str, own: &'a str) -> FileLinks<'a> {
-        FileLinks { places: self, folder: file.rsplit_once('/').map_or("", |(folder, _)| folder), own }
+    pub fn of_part<'a>(&'a self, file: &'a str, page: &'a str) -> FileLinks<'a> {
+        FileLinks { places: self, folder: file.rsplit_once('/').map_or("", |(folder, _)| folder), own: page }
     }
 }
 

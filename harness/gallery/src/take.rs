@@ -130,7 +130,7 @@ fn value_of(overrides: &[(String, f64)], name: &str) -> Option<f64> {
 /// Returns the overrides of a text that are no effects, with the frame's values as `--set` takes them; those that have
 /// their default are left as they are.
 fn set(text: &str, overrides: &[(String, f64)]) -> Vec<(String, String)> {
-    let of = |line: &str| {
+    let setting_of = |line: &str| {
         let (name, rest) = line.strip_prefix("override ")?.split_once(':')?;
         let (ty, default) = rest.split_once('=')?;
         let default = default.trim().trim_end_matches(';').trim_end_matches(['u', 'f']);
@@ -142,7 +142,7 @@ fn set(text: &str, overrides: &[(String, f64)]) -> Vec<(String, String)> {
         let is_effect = name.starts_with("EFFECT_");
         (!is_effect && value != default).then(|| (name.trim().to_owned(), value))
     };
-    text.lines().filter_map(of).collect()
+    text.lines().filter_map(setting_of).collect()
 }
 
 #[cfg(test)]

@@ -154,7 +154,7 @@ mod tests {
             assert!(technique.recipes.iter().all(|name| lapidary_wgsl::recipe(name).is_some()), "{}", technique.name);
             assert!(Committed::all().any(|picture| picture.name() == technique.hero), "{}", technique.hero);
             let function =
-                |name: &&str| cookbook::module(name).is_some_and(|of| of.function(technique.function).is_some());
+                |name: &&str| cookbook::module(name).is_some_and(|found| found.function(technique.function).is_some());
             assert!(technique.modules.iter().any(function), "{}", technique.function);
             let beside = technique.beside.iter().all(|(name, _)| TECHNIQUES.iter().any(|other| other.name == *name));
             assert!(beside, "{}: another technique", technique.name);
@@ -166,6 +166,9 @@ mod tests {
         let folders: BTreeSet<String> = Committed::all()
             .filter_map(|picture| Some(picture.folder().file_name()?.to_string_lossy().into_owned()))
             .collect();
-        assert!(folders.iter().all(|folder| TECHNIQUES.iter().any(|of| of.pictures == folder)), "{folders:?}");
+        assert!(
+            folders.iter().all(|folder| TECHNIQUES.iter().any(|technique| technique.pictures == folder)),
+            "{folders:?}"
+        );
     }
 }

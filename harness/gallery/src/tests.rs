@@ -41,7 +41,7 @@ fn pages_of(pictures: &[Source], folder: &Path) -> Result<Vec<(Page, String)>, G
         rustdoc: false,
     };
     let pages = pages::all(&parts);
-    let html = (0..pages.len()).map(|at| pages::html(&parts, &pages, at)).collect::<Vec<_>>();
+    let html = (0..pages.len()).map(|index| pages::html(&parts, &pages, index)).collect::<Vec<_>>();
     Ok(pages.into_iter().zip(html).collect())
 }
 

@@ -296,7 +296,8 @@ impl Case {
         };
         let mut frames = vec![("none".to_owned(), without(&[]))];
         frames.extend(self.effects.iter().map(|effect| {
-            let below = |of: &Effect| self.stands_on.iter().find(|(upper, _)| upper == of).map(|(_, under)| *under);
+            let below =
+                |above: &Effect| self.stands_on.iter().find(|(upper, _)| upper == above).map(|(_, under)| *under);
             let kept: Vec<Effect> = std::iter::successors(Some(*effect), below).collect();
             let under = below(effect);
             (under.map_or_else(|| effect.to_string(), |under| format!("{effect} on {under}")), without(&kept))
@@ -359,10 +360,10 @@ fn table(report: &Report) -> Table {
         let under = effects.split_once(" on ").map_or("none", |(_, under)| under);
         report.row(&format!("{rung}, {under}"), &row.view, STEPS).filter(|below| below.rung != row.rung)
     };
-    let part = |row: &Row, at: usize| row.rung.splitn(2, ", ").nth(at).unwrap_or_default().to_owned();
+    let part = |row: &Row, index: usize| row.rung.splitn(2, ", ").nth(index).unwrap_or_default().to_owned();
     let shown = |value: Option<f64>, decimals| value.map_or("–".to_owned(), |value| format!("{value:+.decimals$}"));
-    let more = |row: &Row, of: fn(&Row) -> Option<f64>, decimals| {
-        shown(of(row).zip(below(row).and_then(of)).map(|(value, below)| value - below), decimals)
+    let more = |row: &Row, value_of: fn(&Row) -> Option<f64>, decimals| {
+        shown(value_of(row).zip(below(row).and_then(value_of)).map(|(value, below)| value - below), decimals)
     };
     let ms = |row: &Row| row.ms;
     let instructions = |row: &Row| Some(f64::from(row.instructions.iter().sum::<u32>()));
@@ -397,7 +398,7 @@ mod tests {
         for case in cases([16, 16]).expect("built in") {
             let decisions = Decisions::all(&case.scene, &case.settings.request());
             for effect in case.effects {
-                assert!(decisions.iter().any(|of| of.has(*effect)), "{}: {effect} is off", case.name);
+                assert!(decisions.iter().any(|decided| decided.has(*effect)), "{}: {effect} is off", case.name);
                 studied = studied.and(Effects::of(&[*effect]));
             }
         }
@@ -410,13 +411,13 @@ mod tests {
     #[ignore = "long; .ci/full runs it"]
     fn more_effects_take_more() {
         for case in cases([16, 16]).expect("built in") {
-            let of = |settings: &Settings| {
+            let cost_of = |settings: &Settings| {
                 let listing = Plan::of(&case.scene, settings).expect("a plan").listing;
                 let instructions: usize = listing.pipelines.iter().map(|pipeline| pipeline.instructions).sum();
                 (instructions, listing.bytes())
             };
             let frames = case.frames();
-            let counts: Vec<(usize, u64)> = frames.iter().map(|(_, settings)| of(settings)).collect();
+            let counts: Vec<(usize, u64)> = frames.iter().map(|(_, settings)| cost_of(settings)).collect();
             let (none, all) = (counts[0], counts[counts.len() - 1]);
             for ((name, _), (instructions, bytes)) in frames.iter().zip(&counts).skip(1) {
                 assert!(*instructions > none.0 && *instructions <= all.0, "{}: {name}: {counts:?}", case.name);

@@ -51,8 +51,8 @@ pub const STUDIED: [&str; 22] = [
 
 /// Returns the names of all tables.
 fn names() -> Vec<&'static str> {
-    let of = |ladder: &Ladder| (ladder.tables)(&Report::default()).into_iter().map(|table| table.name);
-    LADDERS.iter().flat_map(of).chain(STUDIED).chain([MODULES, CHOICES, BUILTINS, DIFFERENCES]).collect()
+    let names_of = |ladder: &Ladder| (ladder.tables)(&Report::default()).into_iter().map(|table| table.name);
+    LADDERS.iter().flat_map(names_of).chain(STUDIED).chain([MODULES, CHOICES, BUILTINS, DIFFERENCES]).collect()
 }
 
 /// Checks that a page's marks are well formed.

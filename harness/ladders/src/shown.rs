@@ -149,14 +149,14 @@ pub fn show(
     measure: impl FnOnce() -> Result<Report, Failure>,
 ) -> Result<Outcome, Failure> {
     let name = ladder.name;
-    let at = |path: &Path, error: &dyn std::fmt::Display| Failure(format!("{}: {error}", path.display()));
+    let failure = |path: &Path, error: &dyn std::fmt::Display| Failure(format!("{}: {error}", path.display()));
     if let Some(out) = &shown.out {
         prepare(out, &format!("{name}.txt"))?;
     }
     let mut pages = Vec::new();
     for path in &shown.fill {
         let page = read_text(path)?;
-        page::check(&page).map_err(|error| at(path, &error))?;
+        page::check(&page).map_err(|error| failure(path, &error))?;
         lapidary_files::check_writable(path)?;
         pages.push((path, page));
     }
@@ -165,7 +165,7 @@ pub fn show(
         None => measure()?,
     };
     for (path, page) in &mut pages {
-        *page = page::fill(page, ladder, &report).map_err(|error| at(path, &error))?;
+        *page = page::fill(page, ladder, &report).map_err(|error| failure(path, &error))?;
     }
     let (text, json) = (ladder.text(&report), report.json()?);
     if let Some(out) = &shown.out {

@@ -33,16 +33,16 @@ impl Table {
     fn lines(&self) -> impl Iterator<Item = Vec<&str>> {
         let count = self.columns.first().map_or(0, |(_, cells)| cells.len());
         let head = self.columns.iter().map(|(heading, _)| heading.as_str()).collect();
-        let line = |at: usize| self.columns.iter().map(|(_, cells)| cells[at].as_str()).collect();
+        let line = |row: usize| self.columns.iter().map(|(_, cells)| cells[row].as_str()).collect();
         std::iter::once(head).chain((0..count).map(line))
     }
 
     /// Returns the table as Markdown, with its note below.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
-        for (at, cells) in self.lines().enumerate().filter(|(_, cells)| !cells.is_empty()) {
+        for (row, cells) in self.lines().enumerate().filter(|(_, cells)| !cells.is_empty()) {
             let _ = writeln!(text, "| {} |", cells.join(" | "));
-            if at == 0 {
+            if row == 0 {
                 let _ = writeln!(text, "|{}", "---|".repeat(cells.len()));
             }
         }

@@ -59,14 +59,17 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         let scene = Scene::named(view)?;
         let measured: Vec<Measured> =
             options.rungs.iter().map(|rung| Measured { rung: *rung, unscaled: false }).collect();
-        let drawn = |of: &&Measured| of.rung != Rung::Reference;
-        let timed: Vec<Timed<'_>> =
-            measured.iter().filter(drawn).map(|of| Timed::new(&scene, settings(view, *of, options.frame))).collect();
+        let drawn = |variant: &&Measured| variant.rung != Rung::Reference;
+        let timed: Vec<Timed<'_>> = measured
+            .iter()
+            .filter(drawn)
+            .map(|variant| Timed::new(&scene, settings(view, *variant, options.frame)))
+            .collect();
         let mut timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?.into_iter();
-        for of in &measured {
-            let timing = if drawn(&of) { timings.next().flatten() } else { None };
-            for (measure, value) in MEASURES.into_iter().zip(walks.distances(gpu, *of)?) {
-                let row = Row::new(&of.rung.to_string(), view, measure, value, "");
+        for variant in &measured {
+            let timing = if drawn(&variant) { timings.next().flatten() } else { None };
+            for (measure, value) in MEASURES.into_iter().zip(walks.distances(gpu, *variant)?) {
+                let row = Row::new(&variant.rung.to_string(), view, measure, value, "");
                 report.rows.push(row.timed(timing.map(|timing| timing.ms)));
             }
         }

@@ -72,11 +72,11 @@ fn may_cast(caster: Bounds, receiver: Bounds, lights: &[Light]) -> bool {
         let sunk = SUNK * (receiver.max - receiver.min).min(caster.max - caster.min).min_element();
         let (least, most) = match *light {
             Light::Directional { toward, .. } => {
-                let open = |towards: f32, at: f32| if towards > 0.0 { f32::INFINITY } else { at };
+                let open = |towards: f32, bound: f32| if towards > 0.0 { f32::INFINITY } else { bound };
                 let least = receiver.min.to_array().into_iter().zip((-toward).to_array());
                 let most = receiver.max.to_array().into_iter().zip(toward.to_array());
-                let least: Vec<f32> = least.map(|(at, towards)| -open(towards, -at)).collect();
-                let most: Vec<f32> = most.map(|(at, towards)| open(towards, at)).collect();
+                let least: Vec<f32> = least.map(|(bound, towards)| -open(towards, -bound)).collect();
+                let most: Vec<f32> = most.map(|(bound, towards)| open(towards, bound)).collect();
                 ([least[0], least[1], least[2]].into(), [most[0], most[1], most[2]].into())
             }
             Light::Point { position, .. } | Light::Spot { position, .. } => {

@@ -26,8 +26,13 @@ impl Chosen {
     pub fn measured(self) -> Option<Measured> {
         let ladder = self.technique.ladder()?;
         let step = |quality| ladder.step(&self.technique.rung(quality).to_string());
-        let (own, fast) = (step(self.quality)?, step(Quality::Fast)?);
-        Some(Measured { error: own.error, worst: own.worst, measure: ladder.measure, times_fast: own.ms / fast.ms })
+        let (chosen, fast) = (step(self.quality)?, step(Quality::Fast)?);
+        Some(Measured {
+            error: chosen.error,
+            worst: chosen.worst,
+            measure: ladder.measure,
+            times_fast: chosen.ms / fast.ms,
+        })
     }
 }
 

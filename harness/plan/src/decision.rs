@@ -80,8 +80,8 @@ impl Decisions {
 
     /// Returns the values of the recipes' overrides: name, and 1 if the effect is on, else 0.
     pub fn constants(&self) -> Vec<(&'static str, f64)> {
-        let of = |decision: &Decision| (decision.effect.override_name(), f64::from(u8::from(decision.on)));
-        self.effects.iter().map(of).collect()
+        let constant = |decision: &Decision| (decision.effect.override_name(), f64::from(u8::from(decision.on)));
+        self.effects.iter().map(constant).collect()
     }
 }
 
@@ -339,7 +339,9 @@ impl Case<'_> {
     fn texture_diffusion(&self) -> Answer {
         match self.rung {
             Rung::Diffuse(Reflectance::Blur) => on("the rung is blur"),
-            Rung::Diffuse(of) if of.is_lambert() && self.material.scatters() => off("the rung is Lambert's law"),
+            Rung::Diffuse(reflectance) if reflectance.is_lambert() && self.material.scatters() => {
+                off("the rung is Lambert's law")
+            }
             Rung::Diffuse(_) if self.material.scatters() => {
                 off(format!("the rung {} spreads light by curvature", self.rung))
             }
@@ -497,16 +499,16 @@ impl Case<'_> {
 
     /// Shadow on a body through which light is followed.
     fn shadow_on_body(&self) -> Answer {
-        let own = "its own is part of the rung: light enters where its source sees the body";
+        let reason = "its own is part of the rung: light enters where its source sees the body";
         if self.request.rung_of(self.object) != Rung::ByMaterial {
-            return off(own);
+            return off(reason);
         }
         if self.request.quality == Quality::Fast {
             return off("quality fast");
         }
         match casting::caster(self.object, self.scene, Casting::Opaque) {
             Some(caster) if !std::ptr::eq(caster, self.object) => on(format!("{} may stand in its light", caster.name)),
-            _ => off(own),
+            _ => off(reason),
         }
     }
 
@@ -525,7 +527,7 @@ impl Case<'_> {
             }
         }
         match self.rung {
-            Rung::Diffuse(of) if !of.is_lambert() => match self.cdrf() {
+            Rung::Diffuse(reflectance) if !reflectance.is_lambert() => match self.cdrf() {
                 (true, _) if self.request.without.has(Effect::Cdrf) => off("cdrf is left out"),
                 (true, _) => on("a shadow on a body that scatters"),
                 (false, reason) => off(reason),

@@ -189,8 +189,8 @@ mod tests {
         let mut seen = Effects::NONE;
         for recipe in lapidary_wgsl::RECIPES {
             let (module, _) = lapidary_specialise::parse(&recipe.compose(), recipe.name).expect("a valid recipe");
-            for (_, of) in module.overrides.iter() {
-                let name = of.name.clone().unwrap_or_default();
+            for (_, declaration) in module.overrides.iter() {
+                let name = declaration.name.clone().unwrap_or_default();
                 if name.starts_with("EFFECT_") {
                     let known = Effect::ALL.into_iter().find(|effect| effect.override_name() == name);
                     seen = seen.and(Effects::of(&[known.unwrap_or_else(|| panic!("{name} of {}", recipe.name))]));

@@ -244,7 +244,7 @@ mod tests {
         let objects = |count| Objects { first: "hare".to_owned(), count };
         let rung: Rung = "convex-8".parse().expect("a rung");
         let faults = vec!["3 edges are open".to_owned(), "1 part is inside out".to_owned()];
-        let of = |note: Note, says: &str| {
+        let line_of = |note: Note, says: &str| {
             let line = note.to_string();
             assert!(line.contains(says), "{line}");
             line
@@ -253,25 +253,25 @@ mod tests {
         assert!(solved.contains("after 3 cycles of multigrid, 1.0e-3, 2.5e-4 and 0.0e0"), "{solved}");
         let mut lines = vec![open, stopped, solved];
         lines.extend([
-            of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),
-            of(Note::InsideOut { objects: objects(3) }, "3 objects, first `hare`: the triangles run clockwise"),
-            of(Note::BackNotDrawn { objects: objects(1) }, "doubleSided"),
-            of(
+            line_of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),
+            line_of(Note::InsideOut { objects: objects(3) }, "3 objects, first `hare`: the triangles run clockwise"),
+            line_of(Note::BackNotDrawn { objects: objects(1) }, "doubleSided"),
+            line_of(
                 Note::ThinWall { objects: objects(1), unused: vec!["absorption", "dispersion"] },
                 "refraction, absorption and dispersion;",
             ),
-            of(Note::Black { objects: objects(1), share: 3e-5, thickness: 0.25 }, "3e-5 is left after 0.250"),
-            of(Note::ClipsToWhite { objects: objects(1), radiance: 50.0 }, "about 1e-2"),
-            of(Note::HardEdges { objects: objects(1), rung }, "averaged by angle"),
-            of(
+            line_of(Note::Black { objects: objects(1), share: 3e-5, thickness: 0.25 }, "3e-5 is left after 0.250"),
+            line_of(Note::ClipsToWhite { objects: objects(1), radiance: 50.0 }, "about 1e-2"),
+            line_of(Note::HardEdges { objects: objects(1), rung }, "averaged by angle"),
+            line_of(
                 Note::FactorsAlone { objects: objects(1), rung, what: vec!["baseColorTexture", "normalTexture"] },
                 "does not draw baseColorTexture and normalTexture",
             ),
-            of(Note::AllEnters { objects: objects(2), rung, share: 0.25 }, "between 0 and 1, here 0.25"),
-            of(Note::LampInside { objects: objects(1), rung }, "a rung such as `diffusion-64`"),
-            of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
-            of(Note::NothingInView, "--from"),
-            of(
+            line_of(Note::AllEnters { objects: objects(2), rung, share: 0.25 }, "between 0 and 1, here 0.25"),
+            line_of(Note::LampInside { objects: objects(1), rung }, "a rung such as `diffusion-64`"),
+            line_of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
+            line_of(Note::NothingInView, "--from"),
+            line_of(
                 Note::NegativeRadiance { file: "sky.exr".to_owned(), pixels: 5, least: -0.001 },
                 "5 pixels have negative parts, down to -1.0e-3",
             ),

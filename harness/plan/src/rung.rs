@@ -156,7 +156,7 @@ impl Rung {
 
     /// Whether the rung spreads light over a surface by its curvature.
     pub fn spreads_by_curvature(self) -> bool {
-        matches!(self, Self::Diffuse(of) if !of.is_lambert() && of != Reflectance::Blur)
+        matches!(self, Self::Diffuse(reflectance) if !reflectance.is_lambert() && reflectance != Reflectance::Blur)
     }
 
     /// Returns how rays inside find facets; `None` if no light is followed inside.

@@ -117,11 +117,11 @@ fn widths(albedo: Vec3) -> Vec3 {
 #[must_use]
 pub fn sigma0_of(medium: &Medium) -> Vec3 {
     let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());
-    let of = |channel: usize| {
+    let width = |channel: usize| {
         let free = 1.0 / extinction[channel];
         if free.is_finite() { widths(scattering * free)[channel] * free } else { 0.0 }
     };
-    Vec3::new(of(0), of(1), of(2))
+    Vec3::new(width(0), width(1), width(2))
 }
 
 /// Returns the share of light that one scattering leaves, for red, green and blue, as if scattering were

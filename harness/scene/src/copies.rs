@@ -80,9 +80,9 @@ impl Place {
 
     /// Returns the material of the copy.
     #[must_use]
-    pub fn material(&self, of: &Material) -> Material {
-        let attenuation_color = self.attenuation_color.unwrap_or(of.attenuation_color);
-        Material { base_color: of.base_color * self.base_color, attenuation_color, ..of.clone() }
+    pub fn material(&self, original: &Material) -> Material {
+        let attenuation_color = self.attenuation_color.unwrap_or(original.attenuation_color);
+        Material { base_color: original.base_color * self.base_color, attenuation_color, ..original.clone() }
     }
 }
 

@@ -52,12 +52,12 @@ const WIDTH: f64 = 9.0;
 #[must_use]
 pub fn merging(time: f64) -> Mesh {
     let gap = 12.0 - 20.0 * time.clamp(0.0, 1.0);
-    let apart = RADII[0] + RADII[1] + gap;
+    let distance = RADII[0] + RADII[1] + gap;
     // The larger drop moves less.
-    let centres = [-apart * RADII[1] / (RADII[0] + RADII[1]), apart * RADII[0] / (RADII[0] + RADII[1])];
-    // Negative inside; `at` is a place along x and a distance from it.
-    let field = |at: DVec2| {
-        let [a, b] = [0, 1].map(|k: usize| at.distance(dvec2(centres[k], 0.0)) - RADII[k]);
+    let centres = [-distance * RADII[1] / (RADII[0] + RADII[1]), distance * RADII[0] / (RADII[0] + RADII[1])];
+    // Negative inside; `place` is a place along x and a distance from it.
+    let field = |place: DVec2| {
+        let [a, b] = [0, 1].map(|k: usize| place.distance(dvec2(centres[k], 0.0)) - RADII[k]);
         let overlap = (WIDTH - (a - b).abs()).max(0.0);
         a.min(b) - overlap * overlap / (4.0 * WIDTH)
     };
@@ -92,13 +92,13 @@ fn revolved([low, high]: [f64; 2], field: impl Fn(DVec2) -> f64) -> Mesh {
         let along = 0.5 * (low + high) + 0.5 * (high - low) * (PI * uv.y).cos();
         let at_pole = uv.y <= 0.0 || uv.y >= 1.0;
         let radius = if at_pole { 0.0 } else { root(0.0, RADII[0] + WIDTH, |radius| field(dvec2(along, radius))) };
-        let at = dvec2(along, radius);
-        let slope = |axis: DVec2| field(at + DIFFERENCE * axis) - field(at - DIFFERENCE * axis);
+        let place = dvec2(along, radius);
+        let slope = |axis: DVec2| field(place + DIFFERENCE * axis) - field(place - DIFFERENCE * axis);
         let normal =
             if at_pole { dvec2(1.0 - 2.0 * uv.y, 0.0) } else { dvec2(slope(DVec2::X), slope(DVec2::Y)).normalize() };
         let (sine, cosine) = (TAU * uv.x.fract()).sin_cos();
-        let turned = |at: DVec2| dvec3(at.x, at.y * cosine, at.y * sine);
-        (turned(at), turned(normal))
+        let turned = |vector: DVec2| dvec3(vector.x, vector.y * cosine, vector.y * sine);
+        (turned(place), turned(normal))
     })
 }
 

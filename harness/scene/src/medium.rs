@@ -197,10 +197,10 @@ mod tests {
     #[test]
     fn a_grid_is_its_cells_at_their_middles_and_lies_between_them() {
         let density = Density::Grid(Arc::new(grid(vec![1.0, 2.0, 3.0, 8.0]).expect("sound")));
-        let at = |x: f32, z: f32| density.at(Vec3::new(x, 0.3, z));
-        assert_eq!([at(0.5, 1.0), at(1.5, 1.0), at(0.5, 3.0), at(1.5, 3.0)], [1.0, 2.0, 3.0, 8.0]);
-        assert_eq!([at(1.0, 1.0), at(0.5, 2.0), at(1.0, 2.0)], [1.5, 2.0, 3.5]);
-        assert_eq!([at(-9.0, -9.0), at(9.0, 9.0)], [1.0, 8.0]);
+        let sampled = |x: f32, z: f32| density.at(Vec3::new(x, 0.3, z));
+        assert_eq!([sampled(0.5, 1.0), sampled(1.5, 1.0), sampled(0.5, 3.0), sampled(1.5, 3.0)], [1.0, 2.0, 3.0, 8.0]);
+        assert_eq!([sampled(1.0, 1.0), sampled(0.5, 2.0), sampled(1.0, 2.0)], [1.5, 2.0, 3.5]);
+        assert_eq!([sampled(-9.0, -9.0), sampled(9.0, 9.0)], [1.0, 8.0]);
         assert_eq!((density.least(), density.most()), (1.0, 8.0));
     }
 

@@ -115,8 +115,8 @@ impl Mesh {
         }
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
-        for (own, others) in [(&mut self.indices, &other.indices), (&mut self.halo, &other.halo)] {
-            own.extend(others.iter().map(|index| first + index));
+        for (indices, others) in [(&mut self.indices, &other.indices), (&mut self.halo, &other.halo)] {
+            indices.extend(others.iter().map(|index| first + index));
         }
     }
 

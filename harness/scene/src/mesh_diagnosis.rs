@@ -186,11 +186,11 @@ impl Welded {
         let parts = self.parts();
         let volume = |part: &[usize]| -> f64 {
             let middle = self.places[self.triangles[part[0]].corners[0]];
-            let of = |&triangle: &usize| {
+            let tetrahedron = |&triangle: &usize| {
                 let Triangle { corners, across } = self.triangles[triangle];
                 across.dot(self.places[corners[0]] - middle) / 6.0
             };
-            part.iter().map(of).sum()
+            part.iter().map(tetrahedron).sum()
         };
         let bounds = |part: &[usize]| {
             let corners = part.iter().flat_map(|&triangle| self.triangles[triangle].corners);

@@ -99,14 +99,14 @@ mod tests {
         let copies = Copies { shape: stone.mesh.clone(), places: vec![Place::IDENTITY, red, again] };
         assert!(copies.is_coloured());
         let both = Object::of_copies("both", copies, stone.material.clone());
-        let apart = both.apart();
-        assert_eq!((apart.len(), &apart[0].mesh), (2, &stone.mesh));
+        let bodies = both.apart();
+        assert_eq!((bodies.len(), &bodies[0].mesh), (2, &stone.mesh));
         let mut joined = stone.mesh.clone();
-        joined.append(&apart[1].mesh);
+        joined.append(&bodies[1].mesh);
         assert_eq!(both.mesh, joined);
-        assert_eq!(apart[1].material, red.material(&stone.material));
-        assert_eq!(apart[1].material.attenuation_color, Vec3::X);
-        let materials = [0, 1, 1].map(|body: usize| apart[body].material.clone());
+        assert_eq!(bodies[1].material, red.material(&stone.material));
+        assert_eq!(bodies[1].material.attenuation_color, Vec3::X);
+        let materials = [0, 1, 1].map(|body: usize| bodies[body].material.clone());
         assert_eq!(both.materials().collect::<Vec<_>>(), materials);
     }
 }

@@ -192,8 +192,8 @@ fn every_prism_of_the_chain_hangs_at_an_angle_of_its_own() {
     let turns: Vec<f32> = links.iter().zip(&axes).map(turn).collect();
     for (k, turn) in turns.iter().enumerate() {
         // Multiples of 31°, modulo 72°, come as close as 10° to an earlier turn, but no closer.
-        let apart = |other: &f32| (turn - other).abs().min(72.0 - (turn - other).abs());
-        assert!(turns[k + 1..].iter().all(|other| apart(other) > 9.9), "{turns:?}");
+        let separation = |other: &f32| (turn - other).abs().min(72.0 - (turn - other).abs());
+        assert!(turns[k + 1..].iter().all(|other| separation(other) > 9.9), "{turns:?}");
     }
     let spread = Bounds::of(links.iter().map(|link| Bounds::of(link.positions.iter().copied()).centre()));
     let across = (spread.max - spread.min).with_y(0.0).length();

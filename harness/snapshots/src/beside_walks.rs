@@ -156,11 +156,11 @@ fn exposed(gpu: &Gpu, scene: &Scene, settings: &Settings, truth: &Picture) -> Re
 
 /// Returns the absolute difference of two pictures' radiance.
 fn apart(gpu: &Gpu, one: &Picture, other: &Picture) -> Result<Picture, SnapshotError> {
-    let apart = |(one, other): (&[f32; 4], &[f32; 4])| {
+    let difference = |(one, other): (&[f32; 4], &[f32; 4])| {
         let [red, green, blue] = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
         [red, green, blue, one[3].max(other[3])]
     };
-    let linear = one.linear.iter().zip(&other.linear).map(apart).collect();
+    let linear = one.linear.iter().zip(&other.linear).map(difference).collect();
     let mut picture = Picture { linear, notes: Vec::new(), ..one.clone() };
     render::encode(gpu, &settings("lambert"), &mut picture)?;
     Ok(picture)
@@ -173,10 +173,12 @@ mod tests {
     /// Every label has its figures: the rows are there, timed.
     #[test]
     fn every_look_is_in_its_record() {
-        for of in ALL {
-            let (technique, measure) = of.record;
+        for beside in ALL {
+            let (technique, measure) = beside.record;
             let record = Record::committed(technique).expect("a report");
-            for (look, scene) in of.looks.iter().flat_map(|look| of.scenes.iter().map(move |scene| (look, scene))) {
+            for (look, scene) in
+                beside.looks.iter().flat_map(|look| beside.scenes.iter().map(move |scene| (look, scene)))
+            {
                 assert!(record.timed(look.row, scene, measure).is_some(), "{scene}, {}", look.row);
                 assert!(WalkedReference::of_scene(scene).is_some());
             }

@@ -41,7 +41,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => shot.name,
             Self::Strip => strip::NAME,
-            Self::BesideWalks(of) => of.name,
+            Self::BesideWalks(beside) => beside.name,
         }
     }
 
@@ -51,7 +51,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => shot.title,
             Self::Strip => strip::TITLE,
-            Self::BesideWalks(of) => of.title,
+            Self::BesideWalks(beside) => beside.title,
         }
     }
 
@@ -64,7 +64,7 @@ impl Committed {
             }
             Self::Shot(shot) => shot.paragraph,
             Self::Strip => strip::PARAGRAPH,
-            Self::BesideWalks(of) => of.paragraph,
+            Self::BesideWalks(beside) => beside.paragraph,
         }
     }
 
@@ -106,7 +106,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => shot.folder(),
             Self::Strip => folder("optical_path"),
-            Self::BesideWalks(of) => folder(of.technique),
+            Self::BesideWalks(beside) => folder(beside.technique),
         }
     }
 
@@ -118,7 +118,7 @@ impl Committed {
         match self {
             Self::Shot(shot) => render_shot(gpu, shot),
             Self::Strip => strip::render(gpu),
-            Self::BesideWalks(of) => of.render(gpu),
+            Self::BesideWalks(beside) => beside.render(gpu),
         }
     }
 

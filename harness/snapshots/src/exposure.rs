@@ -5,20 +5,20 @@
 /// every exposure is equally good: 1.
 #[must_use]
 pub fn best_exposure(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
-    let [both, own, _] = products(found, truth);
-    if own > 0.0 { both / own } else { 1.0 }
+    let [both, found_power, _] = products(found, truth);
+    if found_power > 0.0 { both / found_power } else { 1.0 }
 }
 
 /// Returns the root mean square distance of linear radiance from `truth`, divided by the root mean
 /// square of `truth`, after applying [`best_exposure`].
 #[must_use]
 pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
-    let [both, own, other] = products(found, truth);
-    if ![both, own, other].into_iter().all(f64::is_finite) {
+    let [both, found_power, other] = products(found, truth);
+    if ![both, found_power, other].into_iter().all(f64::is_finite) {
         return f64::INFINITY;
     }
     // The minimum of |k a - b|^2 over k.
-    let nearer = if own > 0.0 { both * both / own } else { 0.0 };
+    let nearer = if found_power > 0.0 { both * both / found_power } else { 0.0 };
     ((other - nearer).max(0.0) / other).sqrt()
 }
 
@@ -26,23 +26,23 @@ pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
 /// square of `truth`, as both are.
 #[must_use]
 pub fn distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
-    let [both, own, other] = products(found, truth);
-    let square = (own - 2.0 * both + other) / other;
+    let [both, found_power, other] = products(found, truth);
+    let square = (found_power - 2.0 * both + other) / other;
     if square.is_nan() { f64::INFINITY } else { square.max(0.0).sqrt() }
 }
 
 /// Returns the sums of a b, a a and b b over the colour channels of all pixels.
 fn products(found: &[[f32; 4]], truth: &[[f32; 4]]) -> [f64; 3] {
-    let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
+    let (mut both, mut found_power, mut other) = (0.0, 0.0, 0.0);
     for (found, truth) in found.iter().zip(truth) {
         for (a, b) in found[..3].iter().zip(&truth[..3]) {
             let (a, b) = (f64::from(*a), f64::from(*b));
             both += a * b;
-            own += a * a;
+            found_power += a * a;
             other += b * b;
         }
     }
-    [both, own, other]
+    [both, found_power, other]
 }
 
 #[cfg(test)]

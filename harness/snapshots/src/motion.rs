@@ -69,8 +69,8 @@ impl Motion {
             Self::Topology => {
                 let bunny = Scene::named("bunny")?;
                 let drops = |time| Object { name: "drops".to_owned(), mesh: merging(time), ..bunny.objects[0].clone() };
-                let apart = Scene { objects: vec![drops(0.0)], ..bunny.clone() }.seen_from(75.0, 20.0);
-                Ok(Scene { objects: vec![drops(time)], lights: vec![sun(-150.0, 0.4)], ..apart })
+                let separate = Scene { objects: vec![drops(0.0)], ..bunny.clone() }.seen_from(75.0, 20.0);
+                Ok(Scene { objects: vec![drops(time)], lights: vec![sun(-150.0, 0.4)], ..separate })
             }
         }
     }

@@ -333,7 +333,8 @@ impl Shot {
         let settings = Settings { without: Effects::NONE, ..self.settings(1) };
         let all: Vec<Decisions> =
             scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings.request())).collect();
-        let is_called = |effect: &Effect| self.without().has(*effect) && all.iter().any(|of| of.has(*effect));
+        let is_called =
+            |effect: &Effect| self.without().has(*effect) && all.iter().any(|decisions| decisions.has(*effect));
         Effect::ALL.into_iter().filter(is_called).map(Effect::name).collect()
     }
 

@@ -58,17 +58,19 @@ const fn behind_boundary(scene: &'static str, title: &'static str, walks: u32) -
 impl WalkedReference {
     /// Returns the references of a technique's recipes through matched surfaces.
     pub fn of(technique: &str) -> impl Iterator<Item = &'static Self> {
-        WALKED.iter().filter(move |of| of.technique == technique && of.boundary == Boundary::Matched)
+        WALKED
+            .iter()
+            .filter(move |reference| reference.technique == technique && reference.boundary == Boundary::Matched)
     }
 
     /// Returns the reference of a scene through matched surfaces; `None` if it has none.
     pub fn of_scene(scene: &str) -> Option<&'static Self> {
-        WALKED.iter().find(|of| of.scene == scene && of.boundary == Boundary::Matched)
+        WALKED.iter().find(|reference| reference.scene == scene && reference.boundary == Boundary::Matched)
     }
 
     /// Returns the reference of a scene through surfaces that refract; `None` if it has none.
     pub fn behind_boundary(scene: &str) -> Option<&'static Self> {
-        WALKED.iter().find(|of| of.scene == scene && of.boundary == Boundary::Dielectric)
+        WALKED.iter().find(|reference| reference.scene == scene && reference.boundary == Boundary::Dielectric)
     }
 
     /// Returns the name of its file.

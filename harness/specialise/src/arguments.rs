@@ -108,8 +108,7 @@ pub(super) fn drop_unread_arguments(module: &mut Module) -> bool {
 /// indices of the others, or `None` if there was nothing to drop.
 fn drop_unread(function: &mut Function, may_go: impl Fn(&FunctionArgument) -> bool) -> Option<Vec<usize>> {
     let read = |index: usize| {
-        let names =
-            |expression: &Expression| matches!(expression, Expression::FunctionArgument(of) if *of as usize == index);
+        let names = |expression: &Expression| matches!(expression, Expression::FunctionArgument(number) if *number as usize == index);
         function.expressions.iter().any(|(_, expression)| names(expression))
     };
     let stays = |index: &usize| read(*index) || !may_go(&function.arguments[*index]);

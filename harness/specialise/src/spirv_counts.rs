@@ -62,9 +62,9 @@ pub fn spirv_counts(
 /// Returns the number of instructions of all entry points of a valid module without overrides. An
 /// entry point that SPIR-V cannot express counts as 0.
 pub fn instructions(ir: &Module, info: &ModuleInfo) -> usize {
-    let of =
+    let count_of =
         |entry: &naga::EntryPoint| instructions_of(ir, info, entry.stage, &entry.name).unwrap_or_default() as usize;
-    ir.entry_points.iter().map(of).sum()
+    ir.entry_points.iter().map(count_of).sum()
 }
 
 /// Returns the number of instructions that one entry point reaches.
@@ -349,13 +349,13 @@ mod tests {
 
     #[test]
     fn the_specialised_gem_is_smaller() {
-        let of = |constants: &[(&str, f64)]| {
+        let counts_of = |constants: &[(&str, f64)]| {
             let (module, _) = dispatch::parse(&lapidary_wgsl::recipe_source("gem"), "gem").expect("a valid recipe");
             let entry_points = ["gem_vertex", "gem_fragment"];
             let (module, info) = specialise::specialise(module, constants, &entry_points).expect("specialises");
             spirv_counts(&module, &info, entry_points[0], entry_points[1]).expect("counts")
         };
-        let (whole, surface) = (of(&[]), of(&[("EFFECT_PROXY_GEOMETRY", 0.0)]));
+        let (whole, surface) = (counts_of(&[]), counts_of(&[("EFFECT_PROXY_GEOMETRY", 0.0)]));
         assert!(surface.fragment_instructions < whole.fragment_instructions, "{surface:?} {whole:?}");
         assert!(surface.vertex_instructions < whole.vertex_instructions, "{surface:?} {whole:?}");
         // One uniform block, the view: 64 + 12 bytes, padded to 80. Without the proxy the normals are

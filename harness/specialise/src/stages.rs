@@ -48,8 +48,9 @@ pub(super) fn drop_unread_members(module: &mut Module) -> Result<bool, Box<WithS
 /// Returns the struct that the vertex stage returns and every fragment stage takes; `None` if
 /// anything else depends on its layout.
 fn handed_on(module: &Module) -> Option<Handle<Type>> {
-    let of = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
-    let returned = of(ShaderStage::Vertex).find_map(|entry| entry.function.result.as_ref()).map(|result| result.ty)?;
+    let entries_of = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
+    let returned =
+        entries_of(ShaderStage::Vertex).find_map(|entry| entry.function.result.as_ref()).map(|result| result.ty)?;
     let is_struct = |ty: Handle<Type>| matches!(module.types[ty].inner, TypeInner::Struct { .. });
     let takes_it_alone = |entry: &EntryPoint| {
         let takes = |ty| entry.function.arguments.iter().any(|argument| argument.ty == ty);
@@ -66,8 +67,8 @@ fn handed_on(module: &Module) -> Option<Handle<Type>> {
         _ => false,
     };
     let alone = is_struct(returned)
-        && of(ShaderStage::Fragment).next().is_some()
-        && of(ShaderStage::Fragment).all(takes_it_alone)
+        && entries_of(ShaderStage::Fragment).next().is_some()
+        && entries_of(ShaderStage::Fragment).all(takes_it_alone)
         && !module.types.iter().any(|(_, ty)| is_part_of(&ty.inner))
         && !module.global_variables.iter().any(|(_, variable)| variable.ty == returned);
     alone.then_some(returned)

@@ -427,11 +427,11 @@ fn third_of(between: Between) -> f32 { return between.third; }
 
 #[test]
 fn what_no_fragment_stage_reads_is_not_handed_on() {
-    let of = |constants: &[(&str, f64)], entries: &[&str]| special_module(STAGES, constants, entries);
-    let (module, text) = of(&[("A", 0.0)], &["vertex", "fragment"]);
+    let specialised = |constants: &[(&str, f64)], entries: &[&str]| special_module(STAGES, constants, entries);
+    let (module, text) = specialised(&[("A", 0.0)], &["vertex", "fragment"]);
     assert!(globals(&module).is_empty(), "{text}");
     assert!(!text.contains("first") && !text.contains("second") && text.contains("@location(2) third"), "{text}");
-    let (module, text) = of(&[], &["vertex", "fragment"]);
+    let (module, text) = specialised(&[], &["vertex", "fragment"]);
     assert!(globals(&module) == ["table"] && !text.contains("first") && text.contains("second"), "{text}");
     // Members move together: the remaining ones follow the position without a gap.
     let TypeInner::Struct { members, span } =

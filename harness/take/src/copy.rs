@@ -125,19 +125,19 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
     for name in names {
         let (name, part) = name.split_once("::").map_or((name.as_str(), None), |(name, part)| (name, Some(part)));
         // No recipe has a module's name; `recipes_keep_the_contract` sees to it.
-        if let Some(of) = cookbook::module(name) {
-            let known: Vec<&str> = of.functions.iter().map(|function| function.name.as_str()).collect();
-            let function = part.map(|part| match of.function(part) {
+        if let Some(module) = cookbook::module(name) {
+            let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
+            let function = part.map(|part| match module.function(part) {
                 Some(found) => Ok(found.name.clone()),
                 None => {
                     let suggestion = nearest::suggest_function(name, part, &known);
                     Err(Failure(format!("module `{name}` has no function `{part}`{suggestion}")))
                 }
             });
-            add(&mut modules, of, |of| of.name, function.transpose()?);
-        } else if let Some(of) = lapidary_wgsl::recipe(name) {
-            let function = part.map(|part| function_of(of, part)).transpose()?;
-            add(&mut recipes, of, |of| of.name, function);
+            add(&mut modules, module, |it| it.name, function.transpose()?);
+        } else if let Some(recipe) = lapidary_wgsl::recipe(name) {
+            let function = part.map(|part| function_of(recipe, part)).transpose()?;
+            add(&mut recipes, recipe, |it| it.name, function);
         } else {
             let modules = cookbook::modules().iter().map(|module| module.name);
             let known: Vec<&str> = modules.chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name)).collect();
@@ -157,12 +157,12 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
 /// Adds a name to those that came before; one without a function stands for all functions.
 fn add<T: 'static>(
     wanted: &mut Vec<Wanted<T>>,
-    of: &'static T,
+    item: &'static T,
     name: impl Fn(&'static T) -> &'static str,
     function: Option<String>,
 ) {
-    match (wanted.iter_mut().find(|other| name(other.of) == name(of)), function) {
-        (None, function) => wanted.push(Wanted { of, functions: function.into_iter().collect() }),
+    match (wanted.iter_mut().find(|other| name(other.of) == name(item)), function) {
+        (None, function) => wanted.push(Wanted { of: item, functions: function.into_iter().collect() }),
         (Some(other), None) => other.functions.clear(),
         (Some(other), Some(_)) if other.functions.is_empty() => {}
         (Some(other), Some(function)) => other.functions.push(function),
@@ -179,15 +179,15 @@ fn function_of(recipe: &Recipe, part: &str) -> Result<String, Failure> {
     }
     // Those of modules have pages of their own.
     let modules: Vec<String> = recipe.requires().into_iter().map(|module| format!("{module}_")).collect();
-    let own = known.into_iter().filter(|name| !modules.iter().any(|start| name.starts_with(start)));
-    let suggestion = nearest::suggest(part, &own.collect::<Vec<_>>());
+    let candidates = known.into_iter().filter(|name| !modules.iter().any(|start| name.starts_with(start)));
+    let suggestion = nearest::suggest(part, &candidates.collect::<Vec<_>>());
     Err(Failure(format!("recipe `{}` has no function `{part}`{suggestion}", recipe.name)))
 }
 
 fn of_modules(modules: &[Wanted<Module>], to: Target) -> Result<Vec<u8>, Failure> {
     if to == Target::Spirv {
         return match modules {
-            [Wanted { of, functions }] if functions.len() == 1 => kernel(of, &functions[0]),
+            [Wanted { of: item, functions }] if functions.len() == 1 => kernel(item, &functions[0]),
             _ => {
                 let (module, function) = (modules[0].of.name, &modules[0].of.functions[0].name);
                 Err(Failure(format!(
@@ -196,14 +196,14 @@ fn of_modules(modules: &[Wanted<Module>], to: Target) -> Result<Vec<u8>, Failure
             }
         };
     }
-    let texts = modules.iter().map(|Wanted { of, functions }| {
+    let texts = modules.iter().map(|Wanted { of: item, functions }| {
         let wanted: Vec<&str> = functions.iter().map(String::as_str).collect();
         // The module's own functions stand in `whole` as well, below the naive forms' own comment.
-        let some = of_functions(of.whole, &wanted).filter(|_| !wanted.is_empty());
-        let text = some.unwrap_or_else(|| of.source.to_owned());
+        let some = of_functions(item.whole, &wanted).filter(|_| !wanted.is_empty());
+        let text = some.unwrap_or_else(|| item.source.to_owned());
         match to.language() {
             None => Ok(text),
-            Some(language) => library(&text, of.name, language),
+            Some(language) => library(&text, item.name, language),
         }
     });
     Ok(texts.collect::<Result<Vec<_>, _>>()?.join("\n").into_bytes())

@@ -7,8 +7,8 @@ use lapidary_scene::Scene;
 
 /// Returns the largest difference of the colours of two pictures' pixels.
 pub fn furthest(one: &[[f32; 4]], other: &[[f32; 4]]) -> f32 {
-    let apart = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, larger);
-    one.iter().zip(other).map(apart).fold(0.0, larger)
+    let difference = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, larger);
+    one.iter().zip(other).map(difference).fold(0.0, larger)
 }
 
 /// Returns, for each pixel, the unit direction of the camera ray through its centre, and its value.

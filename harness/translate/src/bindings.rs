@@ -70,9 +70,9 @@ pub struct Bound {
 #[must_use]
 pub fn bindings(module: &Module) -> Vec<Bound> {
     let bound = module.global_variables.iter().filter_map(|(_, variable)| {
-        let at = variable.binding?;
+        let slot = variable.binding?;
         let name = variable.name.clone().unwrap_or_default();
-        Some(Bound { group: at.group, binding: at.binding, name, kind: kind(module, variable), ty: variable.ty })
+        Some(Bound { group: slot.group, binding: slot.binding, name, kind: kind(module, variable), ty: variable.ty })
     });
     let mut bound: Vec<Bound> = bound.collect();
     bound.sort_by_key(|bound| (bound.group, bound.binding));
@@ -97,7 +97,7 @@ fn kind(module: &Module, variable: &GlobalVariable) -> Kind {
 pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut Setting) -> Vec<Place> {
     let mut bound: Vec<&GlobalVariable> =
         module.global_variables.iter().map(|(_, variable)| variable).filter(|it| it.binding.is_some()).collect();
-    bound.sort_by_key(|variable| variable.binding.map(|at| (at.group, at.binding)));
+    bound.sort_by_key(|variable| variable.binding.map(|binding| (binding.group, binding.binding)));
     // How many of a sort have a place.
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     let mut next = |sort: &'static str| {
@@ -108,14 +108,14 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
     let mut resources = msl::BindingMap::default();
     let mut places = Vec::new();
     for variable in bound {
-        let Some(at) = variable.binding else { continue };
+        let Some(binding) = variable.binding else { continue };
         let (kind, name) = (kind(module, variable), variable.name.clone().unwrap_or_default());
         let place = match language {
             Language::Hlsl => {
-                let space = u8::try_from(at.group).unwrap_or(u8::MAX);
-                let target = hlsl::BindTarget { space, register: at.binding, ..hlsl::BindTarget::default() };
-                setting.hlsl.binding_map.insert(at, target);
-                format!("register({}, space{space})", register(kind, at.binding))
+                let space = u8::try_from(binding.group).unwrap_or(u8::MAX);
+                let target = hlsl::BindTarget { space, register: binding.binding, ..hlsl::BindTarget::default() };
+                setting.hlsl.binding_map.insert(binding, target);
+                format!("register({}, space{space})", register(kind, binding.binding))
             }
             Language::Msl => {
                 let sort = match kind {
@@ -124,15 +124,15 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
                     Kind::Sampler => "sampler",
                 };
                 let slot = next(sort);
-                let own = u8::try_from(slot).unwrap_or(u8::MAX);
+                let number = u8::try_from(slot).unwrap_or(u8::MAX);
                 let mutable = matches!(kind, Kind::Storage { writes: true } | Kind::StorageTexture { writes: true });
                 let mut target = msl::BindTarget { mutable, ..msl::BindTarget::default() };
                 match sort {
-                    "buffer" => target.buffer = Some(own),
-                    "texture" => target.texture = Some(own),
-                    _ => target.sampler = Some(msl::BindSamplerTarget::Resource(own)),
+                    "buffer" => target.buffer = Some(number),
+                    "texture" => target.texture = Some(number),
+                    _ => target.sampler = Some(msl::BindSamplerTarget::Resource(number)),
                 }
-                resources.insert(at, target);
+                resources.insert(binding, target);
                 format!("[[{sort}({slot})]]")
             }
             Language::Glsl => match kind {
@@ -145,7 +145,7 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
                         _ => "texture unit",
                     };
                     let slot = next(sort);
-                    setting.glsl.insert(at, u8::try_from(slot).unwrap_or(u8::MAX));
+                    setting.glsl.insert(binding, u8::try_from(slot).unwrap_or(u8::MAX));
                     format!("{sort}, binding = {slot}")
                 }
             },
@@ -156,15 +156,15 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
             },
         };
         if used.global_variables.iter().any(|(_, left)| left.binding == variable.binding) {
-            places.push(Place { wgsl: Some(at), name, place });
+            places.push(Place { wgsl: Some(binding), name, place });
         }
     }
     if language == Language::Msl {
         let sizes = (!sized(module).is_empty()).then(|| u8::try_from(next("buffer")).unwrap_or(u8::MAX));
         for entry in &used.entry_points {
-            let own =
+            let entry_resources =
                 msl::EntryPointResources { resources: resources.clone(), sizes_buffer: sizes, ..Default::default() };
-            setting.msl.per_entry_point_map.insert(entry.name.clone(), own);
+            setting.msl.per_entry_point_map.insert(entry.name.clone(), entry_resources);
         }
         if let (Some(slot), false) = (sizes, sized(used).is_empty()) {
             let place = format!("[[buffer({slot})]]: the sizes in bytes of {}", sized(used).join(", "));
@@ -176,7 +176,7 @@ pub fn assign(module: &Module, used: &Module, language: Language, setting: &mut 
 
 /// Returns a register of HLSL.
 pub fn register_of(module: &Module, variable: &GlobalVariable) -> String {
-    register(kind(module, variable), variable.binding.map_or(0, |at| at.binding))
+    register(kind(module, variable), variable.binding.map_or(0, |binding| binding.binding))
 }
 
 fn register(kind: Kind, number: u32) -> String {

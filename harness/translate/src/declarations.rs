@@ -69,11 +69,11 @@ pub fn declarations<'a>(lines: &[&'a str]) -> Vec<Declaration<'a>> {
 pub fn reached(declarations: &[Declaration<'_>], is_root: impl Fn(&Declaration<'_>) -> bool) -> Vec<bool> {
     let mut names: HashSet<&str> = HashSet::new();
     let mut taken: Vec<bool> = declarations.iter().map(is_root).collect();
-    let mut left: Vec<usize> = (0..declarations.len()).filter(|at| taken[*at]).collect();
-    while let Some(at) = left.pop() {
-        let own = locals(&declarations[at]);
-        let used = declarations[at].lines.iter().flat_map(|line| used(without_comment(line)));
-        names.extend(used.filter(|word| !own.contains(word)));
+    let mut left: Vec<usize> = (0..declarations.len()).filter(|index| taken[*index]).collect();
+    while let Some(index) = left.pop() {
+        let local_names = locals(&declarations[index]);
+        let used = declarations[index].lines.iter().flat_map(|line| used(without_comment(line)));
+        names.extend(used.filter(|word| !local_names.contains(word)));
         for (other, declaration) in declarations.iter().enumerate() {
             if !taken[other] && declaration.name.is_some_and(|name| names.contains(name)) {
                 taken[other] = true;
@@ -120,16 +120,16 @@ fn locals<'a>(declaration: &Declaration<'a>) -> HashSet<&'a str> {
 /// the next, and goes if nothing of that is left; the last one stays. Several empty lines become one.
 #[must_use]
 pub fn text_of(declarations: &[Declaration<'_>], needed: &[bool]) -> String {
-    let headers: Vec<usize> = (0..declarations.len()).filter(|at| declarations[*at].is_header()).collect();
+    let headers: Vec<usize> = (0..declarations.len()).filter(|index| declarations[*index].is_header()).collect();
     let is_left = |header: usize| {
         let end = headers.iter().copied().find(|next| *next > header).unwrap_or(declarations.len());
-        end == declarations.len() || (header..end).any(|at| needed[at] && declarations[at].name.is_some())
+        end == declarations.len() || (header..end).any(|index| needed[index] && declarations[index].name.is_some())
     };
     let mut text = String::new();
-    for (at, declaration) in declarations.iter().enumerate() {
+    for (index, declaration) in declarations.iter().enumerate() {
         let is_kept = match declaration.name {
-            Some(_) => needed[at],
-            None => !headers.contains(&at) || is_left(at),
+            Some(_) => needed[index],
+            None => !headers.contains(&index) || is_left(index),
         };
         for line in declaration.lines.iter().filter(|_| is_kept) {
             if !line.trim().is_empty() || !(text.is_empty() || text.ends_with("\n\n")) {
@@ -186,7 +186,7 @@ pub fn without_comment(line: &str) -> &str {
 /// Returns the name that a line at the level of the module declares.
 fn declared(code: &str) -> Option<&str> {
     // Attributes such as `@group(1) @binding(0)` stand before a variable.
-    let code = if code.starts_with('@') { &code[code.find(" var").map_or(code.len(), |at| at + 1)..] } else { code };
+    let code = if code.starts_with('@') { &code[code.find(" var").map_or(code.len(), |gap| gap + 1)..] } else { code };
     let keyword = code.split([' ', '<']).next()?;
     let rest = match keyword {
         "fn" | "struct" | "const" | "override" | "alias" => &code[keyword.len()..],

@@ -19,7 +19,7 @@ pub fn with_constants(source: &str, values: &[(&str, &str)], wanted: &[&str]) ->
     if values.is_empty() {
         return Ok(source.to_owned());
     }
-    let is_second = |(at, (name, _)): &(usize, &(&str, &str))| values[..*at].iter().any(|(other, _)| other == name);
+    let is_second = |(nth, (name, _)): &(usize, &(&str, &str))| values[..*nth].iter().any(|(other, _)| other == name);
     if let Some((_, (name, _))) = values.iter().enumerate().find(is_second) {
         return Err(TranslateError::Fit(format!("`{name}` is set twice")));
     }
@@ -113,17 +113,17 @@ fn with_length(name: &str) -> (&str, Option<&str>) {
 pub fn in_group(source: &str, group: &str) -> String {
     let mut bound: Vec<Bound<'_>> = source.lines().filter_map(binding_of).collect();
     bound.sort_by_key(|bound| bound.at);
-    let place = |at: (u32, u32)| bound.iter().position(|bound| bound.at == at).unwrap_or_default();
+    let place = |binding: (u32, u32)| bound.iter().position(|bound| bound.at == binding).unwrap_or_default();
     let mut text =
         format!("// All bindings are in group {group}. In brackets: their group and binding in the recipe.\n");
-    for (number, Bound { name, at, declared }) in bound.iter().enumerate() {
-        text.push_str(&format!("//   {number}: {declared} {name} ({}, {})\n", at.0, at.1));
+    for (number, Bound { name, at: binding, declared }) in bound.iter().enumerate() {
+        text.push_str(&format!("//   {number}: {declared} {name} ({}, {})\n", binding.0, binding.1));
     }
     text.push('\n');
     for line in source.lines() {
         match binding_of(line) {
             Some(bound) => {
-                let rest = line.find(" var").map_or("", |at| &line[at..]);
+                let rest = line.find(" var").map_or("", |start| &line[start..]);
                 text.push_str(&format!("@group({group}) @binding({}){rest}\n", place(bound.at)));
             }
             None => {
@@ -245,9 +245,9 @@ fn seen() -> vec4f {
             .global_variables
             .iter()
             .filter_map(|(_, variable)| Some((variable.binding?, variable.name.as_deref()?)))
-            .map(|(at, name)| {
-                assert_eq!(at.group, 2);
-                (at.binding, name)
+            .map(|(binding, name)| {
+                assert_eq!(binding.group, 2);
+                (binding.binding, name)
             })
             .collect();
         bound.sort_unstable();

@@ -9,8 +9,8 @@ use std::collections::HashMap;
 /// Gives naga the heap of samplers that it wants to read from; [`portable`] takes it out again.
 pub fn give_heap(module: &Module, options: &mut hlsl::Options) {
     for (_, variable) in module.global_variables.iter() {
-        if let (Some(at), TypeInner::Sampler { .. }) = (variable.binding, &module.types[variable.ty].inner) {
-            let key = hlsl::SamplerIndexBufferKey { group: at.group };
+        if let (Some(binding), TypeInner::Sampler { .. }) = (variable.binding, &module.types[variable.ty].inner) {
+            let key = hlsl::SamplerIndexBufferKey { group: binding.group };
             options.sampler_buffer_binding_map.insert(key, hlsl::BindTarget::default());
         }
     }
@@ -40,7 +40,7 @@ fn sampler(line: &str, module: &Module) -> Option<String> {
     let name = declared.rsplit(' ').next()?;
     // A keyword ends with an underscore here, and a name that a function has as well with a number.
     let base = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
-    let is_it = |variable: &GlobalVariable| variable.name.as_deref().is_some_and(|own| own == name || own == base);
+    let is_it = |variable: &GlobalVariable| variable.name.as_deref().is_some_and(|word| word == name || word == base);
     let (_, variable) = module.global_variables.iter().find(|(_, variable)| is_it(variable))?;
     let space = variable.binding?.group;
     Some(format!("{declared} : register({}, space{space});", bindings::register_of(module, variable)))
@@ -59,8 +59,8 @@ fn zeroed_array(line: &str) -> Option<String> {
         return Some(format!("{name} = {{ {} }};", zeros.join(", ")));
     }
     let loops = lengths.iter().enumerate().map(|(depth, length)| {
-        let at = format!("at{depth}");
-        format!("for (uint {at} = 0u; {at} < {length}u; {at}++) ")
+        let index = format!("at{depth}");
+        format!("for (uint {index} = 0u; {index} < {length}u; {index}++) ")
     });
     let places: String = (0..lengths.len()).map(|depth| format!("[at{depth}]")).collect();
     Some(format!("{indent}{}{}{places} = ({element})0;", loops.collect::<String>(), name.trim_start()))
@@ -97,13 +97,13 @@ fn pads(text: &str) -> Vec<bool> {
 /// Splits a list at the commas that no parentheses hold.
 fn split(list: &str) -> Vec<&str> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0i32, 0);
-    for (at, character) in list.char_indices() {
+    for (place, character) in list.char_indices() {
         match character {
             '(' => depth += 1,
             ')' => depth -= 1,
             ',' if depth == 0 => {
-                parts.push(list[start..at].trim());
-                start = at + 1;
+                parts.push(list[start..place].trim());
+                start = place + 1;
             }
             _ => {}
         }

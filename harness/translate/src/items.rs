@@ -69,7 +69,7 @@ fn item(text: String) -> Item {
     };
     // A register stands behind a colon.
     let value = [" = ", " : "].iter().filter_map(|sign| code.find(sign)).min().unwrap_or(code.len());
-    let is_called = code.find('(').is_some_and(|at| at < value);
+    let is_called = code.find('(').is_some_and(|place| place < value);
     let (kind, name) = if let Some(rest) = code.strip_prefix("struct ") {
         (Kind::Struct, rest.split(|c: char| !is_word(c)).next().unwrap_or_default().to_owned())
     } else if code.starts_with("typedef ") {

@@ -22,12 +22,12 @@ pub fn library(source: &str, name: &str, language: Language) -> Result<String, T
     let body = translated(source, language).map_err(|why| culprit(source, language, why))?;
     let lines: Vec<&str> = source.lines().collect();
     let declarations = declarations(&lines);
-    let own: HashSet<&str> = declarations.iter().filter_map(|declaration| declaration.name).collect();
+    let declared: HashSet<&str> = declarations.iter().filter_map(|declaration| declaration.name).collect();
     let mut items: Vec<Item> = items(&body).into_iter().filter(|item| is_kept(item, language)).collect();
     if language == Language::Hlsl {
         hlsl::list_constants(&mut items);
     }
-    prefix_helpers(&mut items, &own, &format!("{name}_"), &camel(name));
+    prefix_helpers(&mut items, &declared, &format!("{name}_"), &camel(name));
     take_numbers_off(&mut items);
     let header = declarations.first().filter(|first| first.name.is_none()).map_or(&[][..], Declaration::comment);
     let mut text: String = header.iter().flat_map(|line| [line, "\n"]).collect();
@@ -150,9 +150,9 @@ fn note(name: &str, language: Language) -> String {
 
 /// Returns the comment with the names that end with an underscore here and not in the source.
 pub(crate) fn other_names(items: &[Item], source: &str) -> String {
-    let own: HashSet<&str> = source.lines().flat_map(words).collect();
+    let known: HashSet<&str> = source.lines().flat_map(words).collect();
     let of_item = |item: &Item| -> Vec<String> {
-        let found = words(&item.text).filter(|word| word.ends_with('_') && own.contains(word.trim_end_matches('_')));
+        let found = words(&item.text).filter(|word| word.ends_with('_') && known.contains(word.trim_end_matches('_')));
         found.map(str::to_owned).collect()
     };
     let names: BTreeSet<String> = items.iter().flat_map(of_item).collect();

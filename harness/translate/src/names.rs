@@ -16,9 +16,9 @@ fn declared(text: &str) -> HashSet<&str> {
         let text = token.text();
         text == "&" || text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
-    let names = (1..tokens.len().saturating_sub(1)).filter_map(|at| match (tokens[at - 1], tokens[at]) {
+    let names = (1..tokens.len().saturating_sub(1)).filter_map(|index| match (tokens[index - 1], tokens[index]) {
         (before, Token::Name(name)) if is_type(before) && before.text() != "return" => {
-            [";", "=", ",", ")", "["].contains(&tokens[at + 1].text()).then_some(name)
+            [";", "=", ",", ")", "["].contains(&tokens[index + 1].text()).then_some(name)
         }
         _ => None,
     });
@@ -60,12 +60,12 @@ pub fn renamed(text: &str, renamed: &HashMap<String, String>) -> String {
     tokens(text).into_iter().map(replace).collect()
 }
 
-/// Gives bindings and variables their names in `own` back, where a writer has added a number because a
+/// Gives bindings and variables their names in `known` back, where a writer has added a number because a
 /// function has something of that name. That, where it meets them, gets another.
-pub fn restore_globals(items: &mut [Item], own: &HashSet<&str>) {
+pub fn restore_globals(items: &mut [Item], known: &HashSet<&str>) {
     let mut numbered = Vec::new();
-    for item in items.iter().filter(|item| item.kind == Kind::Variable && !own.contains(item.name.as_str())) {
-        if let Some(base) = without_number(&item.name).filter(|base| own.contains(base)) {
+    for item in items.iter().filter(|item| item.kind == Kind::Variable && !known.contains(item.name.as_str())) {
+        if let Some(base) = without_number(&item.name).filter(|base| known.contains(base)) {
             numbered.push((item.name.clone(), base.to_owned()));
         }
     }
@@ -92,11 +92,11 @@ pub fn take_numbers_off(items: &mut [Item]) {
             }
         }
         // Of several, all keep their numbers but the first, so that none is mixed up.
-        fn first(of: Vec<&str>) -> Option<&str> {
-            of.into_iter().min_by_key(|name| (name.len(), (*name).to_owned()))
+        fn first(candidates: Vec<&str>) -> Option<&str> {
+            candidates.into_iter().min_by_key(|name| (name.len(), (*name).to_owned()))
         }
         let renames: HashMap<String, String> =
-            wanted.into_iter().filter_map(|(base, of)| Some((first(of)?.to_owned(), base.to_owned()))).collect();
+            wanted.into_iter().filter_map(|(base, alike)| Some((first(alike)?.to_owned(), base.to_owned()))).collect();
         item.text = renamed(&item.text, &renames);
     }
 }
@@ -104,11 +104,11 @@ pub fn take_numbers_off(items: &mut [Item]) {
 /// Gives what a writer has added the prefixes of the text's own names, so that two translated texts
 /// do not clash: `functions` for functions and variables, `types` for types.
 ///
-/// `own` are the names that the text declares itself.
-pub fn prefix_helpers(items: &mut [Item], own: &HashSet<&str>, functions: &str, types: &str) {
+/// `known` are the names that the text declares itself.
+pub fn prefix_helpers(items: &mut [Item], known: &HashSet<&str>, functions: &str, types: &str) {
     let mut taken: HashSet<String> = items.iter().map(|item| item.name.clone()).collect();
     let mut renames = HashMap::new();
-    for item in items.iter().filter(|item| !item.name.is_empty() && !own.contains(item.name.as_str())) {
+    for item in items.iter().filter(|item| !item.name.is_empty() && !known.contains(item.name.as_str())) {
         let is_type = matches!(item.kind, Kind::Struct | Kind::Alias);
         let array = array_of(&item.text);
         let name = array.as_deref().unwrap_or(&item.name);

@@ -50,15 +50,15 @@ fn indent(line: &str) -> usize {
 /// Returns the lines without the branches that are ruled out.
 fn folded(lines: &[&str], constants: &HashMap<&str, Value>) -> Vec<String> {
     let mut kept: Vec<String> = Vec::new();
-    let mut at = 0;
-    while at < lines.len() {
-        let Some((branches, end)) = branches(lines, at) else {
-            kept.push(lines[at].to_owned());
-            at += 1;
+    let mut index = 0;
+    while index < lines.len() {
+        let Some((branches, end)) = branches(lines, index) else {
+            kept.push(lines[index].to_owned());
+            index += 1;
             continue;
         };
-        let margin = indent(lines[at]);
-        at = end;
+        let margin = indent(lines[index]);
+        index = end;
         // Those up to the first that is always taken.
         let mut left: Vec<(Option<&str>, Vec<String>)> = Vec::new();
         for Branch { condition, body } in branches {
@@ -96,8 +96,8 @@ fn folded(lines: &[&str], constants: &HashMap<&str, Value>) -> Vec<String> {
                 }
                 if leaves {
                     // What follows in this block is never reached.
-                    while at < lines.len() && (lines[at].trim().is_empty() || indent(lines[at]) >= margin) {
-                        at += 1;
+                    while index < lines.len() && (lines[index].trim().is_empty() || indent(lines[index]) >= margin) {
+                        index += 1;
                     }
                 }
             }

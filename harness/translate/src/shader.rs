@@ -61,8 +61,8 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     if language == Language::Hlsl {
         hlsl::list_constants(&mut items);
     }
-    let own = declarations.iter().filter_map(|declaration| declaration.name).collect();
-    restore_globals(&mut items, &own);
+    let declared = declarations.iter().filter_map(|declaration| declaration.name).collect();
+    restore_globals(&mut items, &declared);
     take_numbers_off(&mut items);
     // GLSL calls every entry point so.
     for item in items.iter_mut().filter(|item| language.is_glsl() && item.name == "main") {
@@ -71,8 +71,8 @@ pub fn shader(source: &str, name: &str, language: Language, entry: Option<&str>)
     let mut text = String::new();
     // A version's directive comes first.
     let version = items.iter().position(|item| item.text.starts_with("#version"));
-    if let Some(at) = version {
-        text = format!("{}\n", items.remove(at).text);
+    if let Some(place) = version {
+        text = format!("{}\n", items.remove(place).text);
     }
     text.push_str(&header(&declarations, &items));
     text.push_str(&note(name, language, &setting, &body));
@@ -108,9 +108,9 @@ fn entry_of(
         let points = module.entry_points.iter().map(|point| format!("{name}::{}", point.name));
         points.collect::<Vec<_>>().join(", ")
     };
-    let of = |wanted: &str| module.entry_points.iter().find(|point| point.name == wanted);
+    let point_of = |wanted: &str| module.entry_points.iter().find(|point| point.name == wanted);
     match (entry, module.entry_points.as_slice()) {
-        (Some(wanted), _) => match of(wanted) {
+        (Some(wanted), _) => match point_of(wanted) {
             Some(point) => Ok(Some((wanted.to_owned(), point.stage))),
             None => {
                 Err(TranslateError::NoEntryPoint { name: name.to_owned(), entry: wanted.to_owned(), found: found() })
@@ -133,18 +133,18 @@ fn depths_as_floats(source: &str) -> Option<String> {
     for name in &names {
         let sampled = ["textureSample", "textureGather"].iter().any(|call| {
             text.match_indices(call)
-                .any(|(at, _)| text[at..].split_once('(').is_some_and(|(_, rest)| rest.starts_with(name)))
+                .any(|(start, _)| text[start..].split_once('(').is_some_and(|(_, rest)| rest.starts_with(name)))
         });
         if sampled {
             return None;
         }
         let call = format!("textureLoad({name},");
-        let places: Vec<usize> = text.match_indices(&call).map(|(at, _)| at).collect();
-        for at in places.into_iter().rev() {
+        let places: Vec<usize> = text.match_indices(&call).map(|(start, _)| start).collect();
+        for start in places.into_iter().rev() {
             let mut depth = 0i32;
-            let end = text[at..].char_indices().find_map(|(offset, character)| {
+            let end = text[start..].char_indices().find_map(|(offset, character)| {
                 depth += i32::from(character == '(') - i32::from(character == ')');
-                (character == ')' && depth == 0).then_some(at + offset + 1)
+                (character == ')' && depth == 0).then_some(start + offset + 1)
             })?;
             text.insert_str(end, ".x");
         }
@@ -162,9 +162,9 @@ fn storage_buffers(module: &Module) -> Vec<&str> {
 fn with_names(found: &[Item], module: &Module, reflection: &glsl::ReflectionInfo) -> Vec<Item> {
     let mut names = Vec::new();
     for (handle, variable) in module.global_variables.iter() {
-        let (Some(at), Some(name)) = (variable.binding, &variable.name) else { continue };
+        let (Some(binding), Some(name)) = (variable.binding, &variable.name) else { continue };
         for stage in ["vs", "fs", "cs"] {
-            names.push((format!("_group_{}_binding_{}_{stage}", at.group, at.binding), name.clone()));
+            names.push((format!("_group_{}_binding_{}_{stage}", binding.group, binding.binding), name.clone()));
         }
         if let Some(block) = reflection.uniforms.get(&handle) {
             names.push((block.clone(), format!("{name}_block")));
@@ -187,8 +187,8 @@ fn header(declarations: &[Declaration<'_>], items: &[Item]) -> String {
             *has_any |= is_left(name);
         }
     }
-    let Some(((own, _), others)) = headers.split_last() else { return String::new() };
-    let mut text: String = own.comment().iter().flat_map(|line| [line, "\n"]).collect();
+    let Some(((last, _), others)) = headers.split_last() else { return String::new() };
+    let mut text: String = last.comment().iter().flat_map(|line| [line, "\n"]).collect();
     let others: Vec<&Declaration<'_>> =
         others.iter().filter(|(_, has_any)| *has_any).map(|(other, _)| *other).collect();
     if !others.is_empty() {
@@ -198,9 +198,9 @@ fn header(declarations: &[Declaration<'_>], items: &[Item]) -> String {
         // Name and purpose, licence, and source with its further lines.
         let lines = other.comment().iter().take_while(|line| **line != "//");
         let kept = lines.filter(|line| !line.starts_with("// Version:"));
-        text.extend(kept.enumerate().map(|(at, line)| {
+        text.extend(kept.enumerate().map(|(index, line)| {
             let line = line.trim_start_matches("//").trim_start();
-            format!("// {} {line}\n", if at == 0 { "-" } else { " " })
+            format!("// {} {line}\n", if index == 0 { "-" } else { " " })
         }));
     }
     text
@@ -259,13 +259,14 @@ fn table(places: &[Place], declarations: &[Declaration<'_>], language: Language)
         let lines = declaration.map_or(&[][..], |declaration| &declaration.lines);
         let code = lines.iter().find_map(|line| Some(&line[line.find(" var")? + 1..]));
         let code = code.map_or("", |code| without_comment(code).trim_end().trim_end_matches(';'));
-        let at = place.wgsl.map_or(String::new(), |at| format!("@group({}) @binding({}) ", at.group, at.binding));
+        let attributes =
+            place.wgsl.map_or(String::new(), |slot| format!("@group({}) @binding({}) ", slot.group, slot.binding));
         // In Metal a binding is an argument, without a place for its comment.
         let comment = match (language, declaration) {
             (Language::Msl, Some(declaration)) => declaration.comment(),
             _ => &[],
         };
-        rows.push((format!("{at}{}", if code.is_empty() { &place.name } else { code }), &place.place, comment));
+        rows.push((format!("{attributes}{}", if code.is_empty() { &place.name } else { code }), &place.place, comment));
     }
     if rows.is_empty() {
         return String::new();

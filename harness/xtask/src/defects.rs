@@ -68,14 +68,14 @@ pub fn read(text: &str) -> Result<Vec<Defect>, String> {
         }
         let mut defect = Defect { number: found.len() + 1, kind: kind.clone(), ..Defect::default() };
         let (mut old, mut new) = (Vec::new(), Vec::new());
-        for (at, line) in part.iter().enumerate() {
+        for (offset, line) in part.iter().enumerate() {
             match line.split_once(' ').unwrap_or((line, "")) {
-                _ if at == 0 => defect.what = (*line).to_owned(),
+                _ if offset == 0 => defect.what = (*line).to_owned(),
                 ("file", file) => defect.file = file.to_owned(),
                 ("test", test) => defect.test = test.to_owned(),
                 ("-", text) => old.push(text),
                 ("+", text) => new.push(text),
-                _ => return Err(format!("{LIST}:{}: neither file, test, - nor +: {line}", first + at)),
+                _ => return Err(format!("{LIST}:{}: neither file, test, - nor +: {line}", first + offset)),
             }
         }
         (defect.old, defect.new) = (old.join("\n"), new.join("\n"));

@@ -280,26 +280,27 @@ fn code_lines(source: &str) -> impl Iterator<Item = (usize, &str)> {
 fn numeric_literals(code: &str) -> Vec<&str> {
     let bytes = code.as_bytes();
     let mut literals = Vec::new();
-    let mut at = 0;
-    while at < bytes.len() {
-        let start = at;
-        if bytes[at].is_ascii_alphabetic() || bytes[at] == b'_' {
-            while at < bytes.len() && (bytes[at].is_ascii_alphanumeric() || bytes[at] == b'_') {
-                at += 1;
+    let mut end = 0;
+    while end < bytes.len() {
+        let start = end;
+        if bytes[end].is_ascii_alphabetic() || bytes[end] == b'_' {
+            while end < bytes.len() && (bytes[end].is_ascii_alphanumeric() || bytes[end] == b'_') {
+                end += 1;
             }
-        } else if bytes[at].is_ascii_digit() || (bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit))
+        } else if bytes[end].is_ascii_digit()
+            || (bytes[end] == b'.' && bytes.get(end + 1).is_some_and(u8::is_ascii_digit))
         {
-            let exponent: &[u8] = if code[at..].starts_with("0x") { b"pP" } else { b"eE" };
-            while at < bytes.len()
-                && (bytes[at].is_ascii_alphanumeric()
-                    || bytes[at] == b'.'
-                    || (matches!(bytes[at], b'+' | b'-') && exponent.contains(&bytes[at - 1])))
+            let exponent: &[u8] = if code[end..].starts_with("0x") { b"pP" } else { b"eE" };
+            while end < bytes.len()
+                && (bytes[end].is_ascii_alphanumeric()
+                    || bytes[end] == b'.'
+                    || (matches!(bytes[end], b'+' | b'-') && exponent.contains(&bytes[end - 1])))
             {
-                at += 1;
+                end += 1;
             }
-            literals.push(&code[start..at]);
+            literals.push(&code[start..end]);
         } else {
-            at += 1;
+            end += 1;
         }
     }
     literals

@@ -137,8 +137,8 @@ fn with_line(manifest: &str, line: &str) -> Option<String> {
     let lines: Vec<&str> = manifest.lines().collect();
     let first = lines.iter().position(|line| form(line))?;
     let last = lines.iter().rposition(|line| form(line))?;
-    let at = (first..=last).find(|at| form(lines[*at]) && lines[*at] > line).unwrap_or(last + 1);
-    let (before, after) = lines.split_at(at);
+    let place = (first..=last).find(|place| form(lines[*place]) && lines[*place] > line).unwrap_or(last + 1);
+    let (before, after) = lines.split_at(place);
     Some([before, &[line], after].concat().join("\n") + "\n")
 }
 

@@ -159,8 +159,8 @@ pub(super) fn measure(
         SCENES.into_iter().map(|name| Ok((name, Scene::named(name)?))).collect::<Result<_, CostError>>()?;
     let (mut rows, mut timed) = (Vec::new(), Vec::new());
     for (name, scene) in &scenes {
-        let walked = |of: Option<&WalkedReference>| -> Result<Vec<[f32; 4]>, CostError> {
-            Ok(of.map(|of| of.picture(gpu)).transpose()?.map_or_else(Vec::new, |picture| picture.linear))
+        let walked = |reference: Option<&WalkedReference>| -> Result<Vec<[f32; 4]>, CostError> {
+            Ok(reference.map(|walk| walk.picture(gpu)).transpose()?.map_or_else(Vec::new, |picture| picture.linear))
         };
         let truth = walked(WalkedReference::of_scene(name))?;
         let refracted = walked(WalkedReference::behind_boundary(name))?;
@@ -265,8 +265,8 @@ pub(super) fn goals(report: &Report) -> Table {
     let mut goals = Vec::new();
     for name in SCENES {
         for (measure, exposure) in [(MEASURES[0], "at the best exposures"), (MEASURES[1], "at exposure 1")] {
-            let of = |look: &str| report.value(look, name, measure);
-            if let (Some(found), Some(lambert)) = (of(GOAL), of(LAMBERT)) {
+            let value_of = |look: &str| report.value(look, name, measure);
+            if let (Some(found), Some(lambert)) = (value_of(GOAL), value_of(LAMBERT)) {
                 let goal = format!("{name}: at most half of the distance of Lambert's law with shadows, {exposure}");
                 let share = found / lambert;
                 let measured = format!("{share:.2}: {found:.3} of {lambert:.3}");
@@ -292,22 +292,29 @@ mod tests {
         println!("{}", table(&report).text());
         println!("{}", zones_table(&report).text());
         println!("{}", goals(&report).text());
-        let of = |look: &str, name: &str, measure: &str| report.value(look, name, measure).expect("measured");
+        let value_of = |look: &str, name: &str, measure: &str| report.value(look, name, measure).expect("measured");
         for name in SCENES {
             for measure in &MEASURES[..2] {
                 for pair in LOOKS.chunks_exact(2) {
                     let [without, with] = [pair[0].0, pair[1].0];
-                    assert!(of(with, name, measure) < of(without, name, measure), "{name}: {with}, {measure}");
+                    assert!(
+                        value_of(with, name, measure) < value_of(without, name, measure),
+                        "{name}: {with}, {measure}"
+                    );
                 }
                 let others = LOOKS.iter().filter(|(look, ..)| *look != GOAL);
-                assert!(others.clone().all(|(look, ..)| of(GOAL, name, measure) < of(look, name, measure)), "{name}");
-                let share = of(GOAL, name, measure) / of(LAMBERT, name, measure);
+                assert!(
+                    others.clone().all(|(look, ..)| value_of(GOAL, name, measure) < value_of(look, name, measure)),
+                    "{name}"
+                );
+                let share = value_of(GOAL, name, measure) / value_of(LAMBERT, name, measure);
                 assert!((share <= MOST) == (name != "skin_bunny"), "{name}, {measure}: {share}");
             }
             // The zones hold nearly all of the difference.
             for (look, ..) in LOOKS {
-                let squares: f64 = ZONES.iter().map(|(zone, ..)| of(look, name, &zone_measure(zone)).powi(2)).sum();
-                let share = squares.sqrt() / of(look, name, MEASURES[0]);
+                let squares: f64 =
+                    ZONES.iter().map(|(zone, ..)| value_of(look, name, &zone_measure(zone)).powi(2)).sum();
+                let share = squares.sqrt() / value_of(look, name, MEASURES[0]);
                 assert!((0.9..1.0 + 1e-9).contains(&share), "{name}, {look}: {share}");
             }
         }

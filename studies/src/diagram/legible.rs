@@ -33,7 +33,7 @@ pub fn faults(scene: &Scene) -> Vec<String> {
 }
 
 fn covered(shape: &Shape) -> Option<Covered> {
-    let Shape::Label { at, anchor, size, runs, .. } = shape else { return None };
+    let Shape::Label { at: place, anchor, size, runs, .. } = shape else { return None };
     let width = label::width(runs, size.0);
     let before = match anchor {
         Anchor::Start => 0.0,
@@ -41,7 +41,7 @@ fn covered(shape: &Shape) -> Option<Covered> {
         Anchor::End => width,
     };
     let text = runs.iter().map(|run| run.text.as_str()).collect();
-    let lower = at.0 - DVec2::new(before, 0.7 * size.0);
+    let lower = place.0 - DVec2::new(before, 0.7 * size.0);
     Some(Covered { text, lower, upper: lower + DVec2::new(width, 0.8 * size.0) })
 }
 
@@ -52,8 +52,8 @@ fn crosses(shape: &Shape, label: &Covered) -> bool {
             let next = points.iter().skip(1).chain(points.first().filter(|_| *closed));
             points.iter().zip(next).any(|(from, to)| passes(*from, *to, label))
         }
-        Shape::Dot { at, radius, .. } | Shape::Ring { at, radius, .. } => {
-            at.0.clamp(label.lower, label.upper).distance(at.0) < radius.0 && radius.0 < 12.0
+        Shape::Dot { at: middle, radius, .. } | Shape::Ring { at: middle, radius, .. } => {
+            middle.0.clamp(label.lower, label.upper).distance(middle.0) < radius.0 && radius.0 < 12.0
         }
         _ => false,
     }

@@ -72,14 +72,14 @@ fn draw() -> Scene {
 
 /// Plane P with its tiles.
 fn tiles(scene: &mut Scene, view: &Oblique, met: &Met) {
-    let own = ProxyGeometryCell { steps: IVec2::ZERO, turned: false };
+    let first_tile = ProxyGeometryCell { steps: IVec2::ZERO, turned: false };
     for (i, j, turned) in (-2..2).flat_map(|i| (-1..1).flat_map(move |j| [false, true].map(|turned| (i, j, turned)))) {
         let tile = ProxyGeometryCell { steps: IVec2::new(i, j), turned };
         let outline = view.all(&corners(facet(met.plane, tile)));
         scene.area(&outline, Paint::Dim, if turned { 0.07 } else { 0.16 });
         scene.outline(&outline, DIM.thin());
     }
-    let image = view.all(&corners(facet(met.plane, own)));
+    let image = view.all(&corners(facet(met.plane, first_tile)));
     scene.area(&image, Paint::Accent, 0.3).outline(&image, INK);
     let tile = view.all(&corners(met.tile));
     scene.area(&tile, Paint::Second, 0.3).outline(&tile, SECOND).named("tile");

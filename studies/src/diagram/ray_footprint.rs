@@ -90,8 +90,8 @@ fn pixel(scene: &mut Scene) {
     scene.dot(place(DVec2::ZERO), 5.5, Paint::Accent);
     let area = share(line);
     let shares: Vec4 = neighbours(line, area);
-    let own = format!("${:.2}$", 1.0 - area);
-    scene.note(place(at(-0.26, -0.3)), Anchor::Middle, Paint::Ink, &own);
+    let rest = format!("${:.2}$", 1.0 - area);
+    scene.note(place(at(-0.26, -0.3)), Anchor::Middle, Paint::Ink, &rest);
     for (x, y, share) in
         [(1.0_f64, 0.0_f64, shares.x), (-1.0, 0.0, shares.y), (0.0, 1.0, shares.z), (0.0, -1.0, shares.w)]
     {

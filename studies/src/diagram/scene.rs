@@ -230,8 +230,8 @@ impl Scene {
 
     /// Fills a rectangle between two opposite corners.
     pub fn cell(&mut self, one: DVec2, other: DVec2, paint: Paint, opacity: f64) -> &mut Self {
-        let (at, size) = (Point(one.min(other)), Point((one - other).abs()));
-        self.push(Shape::Cell { at, size, paint, opacity: Number(opacity) })
+        let (corner, size) = (Point(one.min(other)), Point((one - other).abs()));
+        self.push(Shape::Cell { at: corner, size, paint, opacity: Number(opacity) })
     }
 
     /// Draws a polyline.
@@ -267,28 +267,28 @@ impl Scene {
     }
 
     /// Draws a circle.
-    pub fn ring(&mut self, at: DVec2, radius: f64, pen: Pen) -> &mut Self {
-        self.push(Shape::Ring { at: Point(at), radius: Number(radius), pen })
+    pub fn ring(&mut self, middle: DVec2, radius: f64, pen: Pen) -> &mut Self {
+        self.push(Shape::Ring { at: Point(middle), radius: Number(radius), pen })
     }
 
     /// Fills a circle.
-    pub fn dot(&mut self, at: DVec2, radius: f64, paint: Paint) -> &mut Self {
-        self.push(Shape::Dot { at: Point(at), radius: Number(radius), paint })
+    pub fn dot(&mut self, middle: DVec2, radius: f64, paint: Paint) -> &mut Self {
+        self.push(Shape::Dot { at: Point(middle), radius: Number(radius), paint })
     }
 
-    /// Writes words, with `$symbols$` between dollars. `at` is halfway up the small letters.
-    pub fn note(&mut self, at: DVec2, anchor: Anchor, paint: Paint, text: &str) -> &mut Self {
-        self.text(at, anchor, NOTE, paint, text)
+    /// Writes words, with `$symbols$` between dollars. `place` is halfway up the small letters.
+    pub fn note(&mut self, place: DVec2, anchor: Anchor, paint: Paint, text: &str) -> &mut Self {
+        self.text(place, anchor, NOTE, paint, text)
     }
 
     /// Writes a symbol, without dollars.
-    pub fn symbol(&mut self, at: DVec2, anchor: Anchor, paint: Paint, text: &str) -> &mut Self {
-        self.text(at, anchor, SYMBOL, paint, &format!("${text}$"))
+    pub fn symbol(&mut self, place: DVec2, anchor: Anchor, paint: Paint, text: &str) -> &mut Self {
+        self.text(place, anchor, SYMBOL, paint, &format!("${text}$"))
     }
 
-    fn text(&mut self, at: DVec2, anchor: Anchor, size: f64, paint: Paint, text: &str) -> &mut Self {
-        let at = Point(at + DVec2::new(0.0, 0.27 * size));
-        self.push(Shape::Label { at, anchor, size: Number(size), paint, runs: label::runs(text, size) })
+    fn text(&mut self, place: DVec2, anchor: Anchor, size: f64, paint: Paint, text: &str) -> &mut Self {
+        let baseline = Point(place + DVec2::new(0.0, 0.27 * size));
+        self.push(Shape::Label { at: baseline, anchor, size: Number(size), paint, runs: label::runs(text, size) })
     }
 }
 

@@ -42,10 +42,10 @@ fn wall(point: DVec2) -> f32 {
 
 /// Returns the first step that meets the wall, and the fraction of the whole way at which it does.
 pub fn found() -> Option<(u32, f64)> {
-    let at = |k: u32| point(f64::from(k) / f64::from(STEPS));
-    let inverse = |k: u32| (1.0 / at(k).x) as f32;
-    let step = (1..=STEPS).find(|k| meets(inverse(k - 1), inverse(*k), wall(at(*k)), 2.0))?;
-    let part = crossing(inverse(step - 1), wall(at(step - 1)), inverse(step), wall(at(step)));
+    let place_of = |k: u32| point(f64::from(k) / f64::from(STEPS));
+    let inverse = |k: u32| (1.0 / place_of(k).x) as f32;
+    let step = (1..=STEPS).find(|k| meets(inverse(k - 1), inverse(*k), wall(place_of(*k)), 2.0))?;
+    let part = crossing(inverse(step - 1), wall(place_of(step - 1)), inverse(step), wall(place_of(step)));
     Some((step, (f64::from(step - 1) + f64::from(part)) / f64::from(STEPS)))
 }
 

@@ -33,7 +33,7 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
 
 fn proxy_sizes(report: &Report) -> Table {
     let views = report.views("mean");
-    let part = |view: &str, at: usize| view.split(", ").nth(at).unwrap_or_default().to_owned();
+    let part = |view: &str, index: usize| view.split(", ").nth(index).unwrap_or_default().to_owned();
     let title = "The proxy at small sizes, 16 samples a pixel: mean radiance over the reference's, and RMSE";
     let mut lines = Table::of("proxy_sizes", title, views)
         .column("stone", |view| part(view, 0))

@@ -104,10 +104,10 @@ pub(super) fn measure(
         let counted = |limited| facets(filled, &settings(rung, limited, COUNTED));
         let (largest, steps, changed) = differences(gpu, scene, rung)?;
         let [unlimited, limited, no_break] = [0, 1, 2].map(|way: usize| timings[way].map(|timing| timing.ms));
-        let (own, with) = (rung.to_string(), |way: &str| format!("{rung}, {way}"));
+        let (label, with) = (rung.to_string(), |way: &str| format!("{rung}, {way}"));
         let row = |rung: &str, measure: &str, value: f64| Row::new(rung, name, measure, value, "");
         report.rows.extend([
-            row(&own, "facets", counted(false)?).timed(unlimited),
+            row(&label, "facets", counted(false)?).timed(unlimited),
             row(&with(LIMITED), "facets", counted(true)?).timed(limited),
             row(&with(LIMITED), "share of the bound", largest).timed(limited),
             row(&with(LIMITED), "steps", steps.into()),

@@ -46,15 +46,15 @@ pub(super) fn measure(
     report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
-    let own = stones()?;
+    let separate = stones()?;
     let every = |object: &Object| Object { material: with_every_effect(&object.material), ..object.clone() };
-    let shared = Scene { objects: own.objects.iter().map(every).collect(), ..own.clone() };
+    let shared = Scene { objects: separate.objects.iter().map(every).collect(), ..separate.clone() };
     // With this rung a single recipe draws all the stones, so that only the variants differ.
     let settings = Settings { rung: VARIED, samples: 1, ..Settings::of_size(options.frame[0], options.frame[1]) };
-    let scenes = [("its own for each material", &own), ("one with every effect for all", &shared)];
+    let scenes = [("its own for each material", &separate), ("one with every effect for all", &shared)];
     let timed = scenes.map(|(_, scene)| Timed::new(scene, settings.clone()));
     let timings = timing::time(gpu, &timed, options.rounds, progress)?;
-    let first = render::render(gpu, &own, &settings)?.linear;
+    let first = render::render(gpu, &separate, &settings)?.linear;
     for ((way, scene), timing) in scenes.into_iter().zip(timings) {
         let picture = render::render(gpu, scene, &settings)?.linear;
         let differences = picture.iter().flatten().zip(first.iter().flatten()).map(|(a, b)| f64::from((a - b).abs()));

@@ -23,13 +23,13 @@ impl Fitted {
     /// Returns the best fits of all forms and kinds of scale.
     pub(super) fn all(profile: &Profile) -> Vec<Self> {
         let &Profile { albedo, radius, .. } = profile;
-        let of = |kind: ScaleKind, form: Form| {
+        let fit_of = |kind: ScaleKind, form: Form| {
             let fixed = kind.of(albedo);
             let fit = form.best_fit(profile, fixed);
             let error = form.sigma_error(&fit, profile, fixed).map(|error| error * radius);
             Self { albedo, radius, form, kind, fit, error }
         };
-        ScaleKind::ALL.into_iter().flat_map(|kind| FORMS.map(|form| of(kind, form))).collect()
+        ScaleKind::ALL.into_iter().flat_map(|kind| FORMS.map(|form| fit_of(kind, form))).collect()
     }
 
     /// Returns the width times the radius in mean free paths.

@@ -69,22 +69,22 @@ impl Form {
         if fit.sigma <= step {
             return None;
         }
-        let [below, at, above] = [fit.sigma - step, fit.sigma, fit.sigma + step].map(values);
+        let [below, middle, above] = [fit.sigma - step, fit.sigma, fit.sigma + step].map(values);
         let slope = |bin: usize| (above[bin] - below[bin]) / (2.0 * step);
-        let bend = |bin: usize| (above[bin] - 2.0 * at[bin] + below[bin]) / (step * step);
-        let misfit = |bin: usize| profile.exitance[bin] - fit.scale * at[bin];
+        let bend = |bin: usize| (above[bin] - 2.0 * middle[bin] + below[bin]) / (step * step);
+        let misfit = |bin: usize| profile.exitance[bin] - fit.scale * middle[bin];
         let sum = |term: &dyn Fn(usize) -> f64| (0..BINS).map(|bin| Profile::share(bin) * term(bin)).sum::<f64>();
         let width = sum(&|bin| (fit.scale * slope(bin)).powi(2) - misfit(bin) * fit.scale * bend(bin));
-        let mixed = sum(&|bin| (fit.scale * at[bin] - misfit(bin)) * slope(bin));
-        let own = sum(&|bin| at[bin] * at[bin]);
+        let mixed = sum(&|bin| (fit.scale * middle[bin] - misfit(bin)) * slope(bin));
+        let squared = sum(&|bin| middle[bin] * middle[bin]);
         // For the width alone, or for width and scale.
-        let determinant = if scale.is_some() { width } else { width * own - mixed * mixed };
+        let determinant = if scale.is_some() { width } else { width * squared - mixed * mixed };
         if determinant.is_nan() || determinant <= 0.0 {
             return None;
         }
         let response = |bin: usize| {
             let by_width = fit.scale * slope(bin);
-            let along = if scale.is_some() { by_width } else { own * by_width - mixed * at[bin] };
+            let along = if scale.is_some() { by_width } else { squared * by_width - mixed * middle[bin] };
             Profile::share(bin) * along / determinant
         };
         Some((0..BINS).map(|bin| (response(bin) * profile.standard_error[bin]).powi(2)).sum::<f64>().sqrt())

@@ -93,10 +93,10 @@ mod tests {
     fn every_sphere_has_each_form_and_scale_once() {
         let report = report();
         for (form, kind) in FORMS.into_iter().flat_map(|form| ScaleKind::ALL.map(|kind| (form, kind))) {
-            let of = |measure: &str| values(&report, &rung(form, kind), measure);
-            let (scales, widths) = (of("scale"), of("sigma R"));
+            let column = |measure: &str| values(&report, &rung(form, kind), measure);
+            let (scales, widths) = (column("scale"), column("sigma R"));
             assert!(scales.len() == SMALL.len() && widths.len() == SMALL.len(), "{form:?} {kind:?}");
-            for ((scale, width), (sigma, radius)) in scales.iter().zip(widths).zip(of("sigma").iter().zip(SMALL)) {
+            for ((scale, width), (sigma, radius)) in scales.iter().zip(widths).zip(column("sigma").iter().zip(SMALL)) {
                 assert_eq!(width, sigma * radius);
                 // Chandrasekhar's diffuse albedo for this single-scattering albedo.
                 assert_eq!((scale - 0.794564).abs() < 6e-7, kind == ScaleKind::Fixed, "{form:?} {scale}");
@@ -140,8 +140,8 @@ mod tests {
     #[test]
     fn a_sphere_with_a_missing_interval_is_not_taken_for_another() {
         let mut report = report();
-        let at = report.rows.iter().position(|row| row.measure == "exitance 7").expect("a row");
-        report.rows.remove(at);
+        let place = report.rows.iter().position(|row| row.measure == "exitance 7").expect("a row");
+        report.rows.remove(place);
         let radii: Vec<f64> = profiles(&report).iter().map(|profile| profile.radius).collect();
         assert_eq!(radii, SMALL[1..]);
     }
@@ -163,10 +163,10 @@ mod tests {
     #[test]
     fn the_best_width_is_not_inverse_to_the_radius() {
         let report = report();
-        let of = |measure: &str| values(&report, &rung(Form::Circular, ScaleKind::Free), measure);
+        let column = |measure: &str| values(&report, &rung(Form::Circular, ScaleKind::Free), measure);
         // Smaller spheres are wider: that much is true.
-        assert!(of("sigma").windows(2).all(|pair| pair[0] > pair[1]), "{:?}", of("sigma"));
-        let widths = of("sigma R");
+        assert!(column("sigma").windows(2).all(|pair| pair[0] > pair[1]), "{:?}", column("sigma"));
+        let widths = column("sigma R");
         assert!(widths.windows(2).all(|pair| pair[0] < pair[1]), "{widths:?}");
         assert!((2.2..2.9).contains(&(widths[4] / widths[0])), "{widths:?}");
     }

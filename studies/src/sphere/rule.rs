@@ -130,9 +130,9 @@ pub(super) fn choices(albedo: f64, profiles: &[Profile], fits: &[Fitted], laws: 
                     let residual = |sphere: &&Profile| form.fit(sphere, sigma(sphere.radius), scale).residual;
                     mean(spheres.iter().map(|sphere| residual(sphere).powi(2)).sum())
                 };
-                let own = |form| {
+                let mean_of = |form| {
                     let same =
-                        |of: &&Fitted| (of.albedo, of.form, of.kind) == (albedo, form, kind) && inside(of.radius);
+                        |fit: &&Fitted| (fit.albedo, fit.form, fit.kind) == (albedo, form, kind) && inside(fit.radius);
                     mean(fits.iter().filter(same).map(|fitted| fitted.fit.residual.powi(2)).sum())
                 };
                 // Searched for as the width at the centre of the range.
@@ -147,8 +147,8 @@ pub(super) fn choices(albedo: f64, profiles: &[Profile], fits: &[Fitted], laws: 
                     sigma0,
                     residual: with(&|radius| sigma0 / radius),
                     law: law.map(|law| with(&|radius| law.sigma(radius))),
-                    best: own(form),
-                    lambert: own(Form::Lambert),
+                    best: mean_of(form),
+                    lambert: mean_of(Form::Lambert),
                 });
             }
         }

@@ -61,8 +61,8 @@ fn walks(report: &Report) -> Table {
 }
 
 /// Returns the heading of a column for a radius.
-fn heading(at: usize, radius: f64) -> String {
-    if at == 0 { format!("R = {radius}") } else { radius.to_string() }
+fn heading(index: usize, radius: f64) -> String {
+    if index == 0 { format!("R = {radius}") } else { radius.to_string() }
 }
 
 /// Shows the widths times radii of a rung.
@@ -77,8 +77,8 @@ fn widths(report: &Report, name: &'static str, what: &str, rung: &str) -> Table 
     };
     let title = format!("σR in mean free paths by the circular form, scale free, {what}");
     let mut lines = Table::of(name, &title, ALBEDOS).column("albedo", f64::to_string);
-    for (at, radius) in RADII.into_iter().enumerate() {
-        lines = lines.column(heading(at, radius), |&albedo| {
+    for (index, radius) in RADII.into_iter().enumerate() {
+        lines = lines.column(heading(index, radius), |&albedo| {
             let width = figure(value(albedo, radius, "sigma R"), 3);
             value(albedo, radius, "error of sigma R").map_or(width.clone(), |error| format!("{width} ± {error:.3}"))
         });
@@ -97,8 +97,8 @@ fn residuals(report: &Report) -> Table {
         .column("albedo", |(albedo, _)| albedo.to_string())
         .column("form", |(_, form)| form.name().to_owned());
     let value = |form, kind, albedo, radius| report.value(&rung(form, kind), &view(albedo, radius), "residual");
-    for (at, radius) in SHOWN.into_iter().enumerate() {
-        lines = lines.column(heading(at, radius), |&(albedo, form)| {
+    for (index, radius) in SHOWN.into_iter().enumerate() {
+        lines = lines.column(heading(index, radius), |&(albedo, form)| {
             ScaleKind::ALL.map(|kind| figure(value(form, kind, albedo, radius), 3)).join(" / ")
         });
     }
@@ -114,8 +114,8 @@ fn albedos(report: &Report) -> Table {
     let spheres = profiles(report);
     let title = "Share of the light on a sphere that it gives back, scattered";
     let mut lines = Table::of("sphere_albedos", title, ALBEDOS).column("albedo", f64::to_string);
-    for (at, radius) in RADII.into_iter().enumerate() {
-        lines = lines.column(heading(at, radius), |&albedo| {
+    for (index, radius) in RADII.into_iter().enumerate() {
+        lines = lines.column(heading(index, radius), |&albedo| {
             let sphere = spheres.iter().find(|sphere| (sphere.albedo, sphere.radius) == (albedo, radius));
             figure(sphere.map(|sphere| sphere.whole()), 3)
         });
@@ -212,9 +212,9 @@ fn sigma(report: &Report) -> Plot {
     }
     let circular = rung(Form::Circular, ScaleKind::Free);
     for (albedo, color) in ALBEDOS.into_iter().zip(COLORS) {
-        let at = |radius: f64| Some((radius, report.value(&circular, &view(albedo, radius), "sigma R")?));
+        let point_at = |radius: f64| Some((radius, report.value(&circular, &view(albedo, radius), "sigma R")?));
         // A zero cannot be shown on a logarithmic axis.
-        let points = RADII.into_iter().filter_map(at).filter(|(_, width)| *width > 0.0);
+        let points = RADII.into_iter().filter_map(point_at).filter(|(_, width)| *width > 0.0);
         series.push(Series::line(&format!("albedo {albedo}"), color, 2, points).dotted());
     }
     series.retain(|series| !series.points.is_empty());

@@ -69,25 +69,25 @@ fn the_drift_is_fitted_to_the_recorded_spheres() {
     let spheres = record(&record_file()).expect("the committed record");
     for (turn, gamma) in [(0.1, 0.3), (0.3, 0.1), (0.02, 0.0)] {
         let drift = mirror::drift(1.0, turn as f32, gamma as f32);
-        let own = drift.share * mirror::accurate(mirror::shifted(0.2, drift.shift), drift.sigma);
+        let mirrored = drift.share * mirror::accurate(mirror::shifted(0.2, drift.shift), drift.sigma);
         let other = drifted(DRIFT, 0.2, turn, gamma);
         let entered = mirror::accurate(mirror::shifted(0.2, drift.shift), drift.sigma);
         let law = lapidary_half_space::directional(entered, gamma as f32);
-        assert!((f64::from(own * law) / other - 1.0).abs() < 1e-5, "{turn} {gamma}");
+        assert!((f64::from(mirrored * law) / other - 1.0).abs() < 1e-5, "{turn} {gamma}");
     }
     let [convolution, _] = [mirror::accurate, mirror::spherical];
     for albedo in ALBEDOS {
         for [low, high] in [[3.0, 7.0], [10.0, 20.0], [30.0, 100.0]] {
-            let inside = |of: &&Profile| of.albedo == albedo && (low..=high).contains(&of.radius);
+            let inside = |profile: &&Profile| profile.albedo == albedo && (low..=high).contains(&profile.radius);
             let some: Vec<&Profile> = spheres.iter().filter(inside).collect();
-            let owned: Vec<Profile> = some.iter().map(|of| (*of).clone()).collect();
+            let owned: Vec<Profile> = some.iter().map(|profile| (*profile).clone()).collect();
             let [_, best] = residuals(&owned, &convolution);
             let drift = drift_residual(&some, DRIFT);
             println!("albedo {albedo}, R from {low} to {high}: best width {best:.3}, drift {drift:.4}");
             assert!(drift < 0.7 * best, "{albedo} {low}: {drift} {best}");
         }
     }
-    let fitted: Vec<&Profile> = spheres.iter().filter(|of| of.radius >= 3.0).collect();
+    let fitted: Vec<&Profile> = spheres.iter().filter(|profile| profile.radius >= 3.0).collect();
     let least = drift_residual(&fitted, DRIFT);
     println!("all from 3 on: {least:.4}");
     assert!(least < 0.0098, "{least}");

@@ -62,8 +62,8 @@ fn moved(scene: &Scene, fact: &str) -> Scene {
             end.0.x += 6.0;
             end.0.y += 9.0;
         }
-        Shape::Cell { at, .. } => at.0.y += 400.0,
-        Shape::Dot { at, .. } => at.0 += 5.0,
+        Shape::Cell { at: corner, .. } => corner.0.y += 400.0,
+        Shape::Dot { at: middle, .. } => middle.0 += 5.0,
         Shape::Ring { radius, .. } => radius.0 *= 1.1,
         Shape::Arc { .. } | Shape::Label { .. } => unreachable!("no law is about it"),
     }
@@ -108,8 +108,8 @@ fn grazes(scene: &Scene) -> Result<(), String> {
 /// Returns the middles of all dots, rings and cells with a name.
 fn places(scene: &Scene, fact: &str) -> Vec<[f64; 2]> {
     let place = |shape: &Shape| match shape {
-        Shape::Dot { at, .. } | Shape::Ring { at, .. } => at.0.to_array(),
-        Shape::Cell { at, size, .. } => (at.0 + 0.5 * size.0).to_array(),
+        Shape::Dot { at: middle, .. } | Shape::Ring { at: middle, .. } => middle.0.to_array(),
+        Shape::Cell { at: corner, size, .. } => (corner.0 + 0.5 * size.0).to_array(),
         _ => panic!("{fact} is no place"),
     };
     scene.of_name(fact).map(place).collect()

@@ -115,7 +115,7 @@ fn the_record_of_spheres_is_what_walks_give() {
         }
     }
     // What the page says of all light, and what it advises.
-    let law = |rung: &str| ["factor", "exponent"].map(|of| record.value(rung, "all albedos", of).expect("a law"));
+    let law = |rung: &str| ["factor", "exponent"].map(|fact| record.value(rung, "all albedos", fact).expect("a law"));
     let [factor, exponent] = law("circular, all light");
     assert!(docs("cdrf.md").contains(&format!("σR = {factor:.2} R^{exponent:.2}")), "{factor} {exponent}");
     let [factor, exponent] = law("circular");
@@ -127,8 +127,8 @@ fn the_record_of_spheres_is_what_walks_give() {
         let squares = (0..random_walk::BINS).map(|bin| {
             let error = walked.standard_error[bin].hypot(recorded.standard_error[bin]);
             // Where nothing left the sphere there is no error to measure by.
-            let apart = walked.exitance[bin] - recorded.exitance[bin];
-            if error > 0.0 { (apart / error).powi(2) } else { 0.0 }
+            let difference = walked.exitance[bin] - recorded.exitance[bin];
+            if error > 0.0 { (difference / error).powi(2) } else { 0.0 }
         });
         // Chi squared of 36 intervals: 36 in the mean, its deviation 8.5.
         let chi_squared: f64 = squares.sum();

@@ -170,12 +170,12 @@ fn a_map_is_nowhere_brighter_than_its_largest_texel() {
 #[test]
 fn the_limit_goes_by_environment_and_exposure() {
     let scene = Scene::named("brilliant").expect("built in");
-    let of = |radiance: f32, exposure: f32| {
+    let counted = |radiance: f32, exposure: f32| {
         let map = EnvironmentMap { width: 2, height: 2, pixels: vec![[radiance; 4]; 4] };
         let usual = settings("convex-16", true);
         facets(&scene, &Settings { environment: Environment::Map(map), exposure, ..usual }).expect("drawn")
     };
-    let [dim, bright, exposed, dark] = [of(1.0, 1.0), of(1e4, 1.0), of(1.0, 1e4), of(0.0, 1.0)];
+    let [dim, bright, exposed, dark] = [counted(1.0, 1.0), counted(1e4, 1.0), counted(1.0, 1e4), counted(0.0, 1.0)];
     println!("{dim} {bright} {exposed} {dark}");
     assert!(dim < 0.95 * bright && bright == exposed && dark == 1.0, "{dim} {bright} {exposed} {dark}");
 }

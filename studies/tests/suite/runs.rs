@@ -40,10 +40,10 @@ fn restraint_changes_nothing() {
     let ways = report.rungs("updates");
     assert_eq!(ways.len(), 3 * 3);
     for ways in ways.chunks(3) {
-        let of = |way: usize, measure: &str| report.value(ways[way], "bunny", measure).expect("measured");
-        assert!((0.05..0.95).contains(&of(0, "with matter")), "{ways:?}");
-        assert!((0..3).all(|way| of(way, "differing") == 0.0 && of(way, "passes") > 2.0), "{ways:?}");
-        let [one, other, all] = [0, 1, 2].map(|way| of(way, "updates"));
+        let value_of = |way: usize, measure: &str| report.value(ways[way], "bunny", measure).expect("measured");
+        assert!((0.05..0.95).contains(&value_of(0, "with matter")), "{ways:?}");
+        assert!((0..3).all(|way| value_of(way, "differing") == 0.0 && value_of(way, "passes") > 2.0), "{ways:?}");
+        let [one, other, all] = [0, 1, 2].map(|way| value_of(way, "updates"));
         assert!(one < all / 2.0 && other < all / 2.0, "{ways:?}: {one} {other} {all}");
     }
 }

@@ -124,9 +124,9 @@ fn tables() -> Vec<Promise> {
             "extrapolates",
             move |draws| (Vec2::new(draws.signed(0, 20), draws.signed(0, 20)), size(draws)),
             |(coordinates, size): (Vec2, UVec2), place: Vec2| {
-                let (at, size) = (coordinates.as_dvec2(), size.as_dvec2());
-                let wanted = (at * (size - 1.0) + 0.5) / size;
-                close(&place.to_array(), &wanted.to_array(), 1e-6 * (1.0 + at.abs().max_element()))
+                let (position, size) = (coordinates.as_dvec2(), size.as_dvec2());
+                let wanted = (position * (size - 1.0) + 0.5) / size;
+                close(&place.to_array(), &wanted.to_array(), 1e-6 * (1.0 + position.abs().max_element()))
             },
         ),
         nothing(TEXTURE, "size 0 has no texel"),

@@ -41,8 +41,8 @@ pub(super) fn promises() -> Vec<Promise> {
             let angle = draws.magnitude(-60, 0);
             let across = Vec3::Y * angle;
             // Half of f32's range, which leaves the other half for the products.
-            let apart = draws.magnitude(-60, 60) * draws.in_cube();
-            (Vec3::ZERO, Vec3::X, apart, Vec3::new(1.0 / (1.0 + angle * angle).sqrt(), across.y, 0.0))
+            let offset = draws.magnitude(-60, 60) * draws.in_cube();
+            (Vec3::ZERO, Vec3::X, offset, Vec3::new(1.0 / (1.0 + angle * angle).sqrt(), across.y, 0.0))
         }),
         finite(FALLBACK, "finite for positions up to 1e37", |draws| {
             let size = draws.magnitude(-126, 121);

@@ -36,8 +36,8 @@ pub(super) fn promises() -> Vec<Promise> {
             CELL,
             "as the formula gives",
             |draws| (Vec2::new(draws.signed(23, 29), draws.signed(23, 29)),),
-            |(at,): (Vec2,), cell: ProxyGeometryCell| {
-                let wanted = IVec2::new(at.x.floor() as i32, at.y.floor() as i32);
+            |(place,): (Vec2,), cell: ProxyGeometryCell| {
+                let wanted = IVec2::new(place.x.floor() as i32, place.y.floor() as i32);
                 that(cell.steps == wanted, || format!("{:?}, not {wanted}", cell.steps))
             },
         ),
@@ -45,12 +45,12 @@ pub(super) fn promises() -> Vec<Promise> {
             CELL,
             "cells beyond 2^31 are clamped to it",
             |draws| (Vec2::new(draws.signed(31, 126), draws.signed(31, 126)),),
-            |(at,): (Vec2,), cell: ProxyGeometryCell| {
-                let clamped = |at: f32, step: i32| {
+            |(place,): (Vec2,), cell: ProxyGeometryCell| {
+                let clamped = |coordinate: f32, step: i32| {
                     // The largest f32 that an i32 holds is 2^31 - 128.
-                    if at > 0.0 { step >= i32::MAX - 127 } else { step == i32::MIN }
+                    if coordinate > 0.0 { step >= i32::MAX - 127 } else { step == i32::MIN }
                 };
-                that(clamped(at.x, cell.steps.x) && clamped(at.y, cell.steps.y), || format!("{:?}", cell.steps))
+                that(clamped(place.x, cell.steps.x) && clamped(place.y, cell.steps.y), || format!("{:?}", cell.steps))
             },
         ),
         finite("proxy_geometry_facet", "exact steps up to 2^24", |draws| {

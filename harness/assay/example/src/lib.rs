@@ -29,8 +29,8 @@ pub fn corner(corner: IVec2) -> f32 {
 pub fn sample(place: Vec2) -> Sample {
     let cell = place.floor();
     let t = place - cell;
-    let at = cell.as_ivec2();
-    let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| corner(at + IVec2::new(x, y)));
+    let lattice = cell.as_ivec2();
+    let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| corner(lattice + IVec2::new(x, y)));
     let fade = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let rise = 30.0 * t * t * (t * (t - 2.0) + 1.0);
     let twist = a - b - c + d;

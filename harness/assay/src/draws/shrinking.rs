@@ -127,8 +127,8 @@ impl<T: std::fmt::Debug> ValueTree for DrawTree<T> {
     fn complicate(&mut self) -> bool {
         match self.undo.take() {
             None => false,
-            Some((at, draw)) => {
-                self.draws[at] = draw;
+            Some((place, draw)) => {
+                self.draws[place] = draw;
                 true
             }
         }

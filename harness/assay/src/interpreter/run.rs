@@ -42,13 +42,13 @@ impl Code {
             registers.set::<M>(*register, *word);
             registers.record::<M>(*register, [*register; 2], [0.0; 2], machine);
         }
-        let (mut at, mut steps) = (0, 0);
-        while let Some(op) = self.ops.get(at) {
+        let (mut place, mut steps) = (0, 0);
+        while let Some(op) = self.ops.get(place) {
             steps += 1;
             if steps > MOST_OPERATIONS {
                 return Err(Stopped(format!("ran {MOST_OPERATIONS} operations and did not end")));
             }
-            at = registers.step(op, at, machine);
+            place = registers.step(op, place, machine);
         }
         Ok(steps)
     }
@@ -100,7 +100,7 @@ impl Registers {
 
     /// Executes one operation and returns the place of the next.
     #[inline(always)]
-    fn step<M: Machine>(&mut self, op: &Op, at: usize, machine: &mut M) -> usize {
+    fn step<M: Machine>(&mut self, op: &Op, place: usize, machine: &mut M) -> usize {
         match *op {
             Op::Copy { to, from } => self.copy::<M>(to, from),
             Op::Offset { to, from, index, last, stride } => {
@@ -109,8 +109,8 @@ impl Registers {
             }
             Op::LoadAt { to, start, offset } => self.copy::<M>(to, start + self.word(offset)),
             Op::StoreAt { start, offset, from } => self.copy::<M>(start + self.word(offset), from),
-            Op::Add { to, a, b } => self.sum(to, [a, b], 1.0, at, machine),
-            Op::Subtract { to, a, b } => self.sum(to, [a, b], -1.0, at, machine),
+            Op::Add { to, a, b } => self.sum(to, [a, b], 1.0, place, machine),
+            Op::Subtract { to, a, b } => self.sum(to, [a, b], -1.0, place, machine),
             Op::Multiply { to, a, b } => {
                 let (x, y) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
                 let exact = f64::from(x) * f64::from(y);
@@ -211,7 +211,7 @@ impl Registers {
                 }
             }
         }
-        at + 1
+        place + 1
     }
 
     /// Sets a float and records its dependence on its operands.
@@ -234,11 +234,11 @@ impl Registers {
 
     /// Computes a ± b; a product may enter unrounded.
     #[inline(always)]
-    fn sum<M: Machine>(&mut self, to: u32, [a, b]: [u32; 2], sign: f64, at: usize, machine: &mut M) {
+    fn sum<M: Machine>(&mut self, to: u32, [a, b]: [u32; 2], sign: f64, place: usize, machine: &mut M) {
         let mut operands = [a, b].map(|register| f64::from(machine.operand(self.float(register))));
         if M::FUSES {
             let products = [a, b].map(|register| self.products[register as usize]);
-            if let Some(fused) = machine.fused(at, products.map(|product| !product.is_nan())) {
+            if let Some(fused) = machine.fused(place, products.map(|product| !product.is_nan())) {
                 operands[fused] = products[fused];
             }
         }

@@ -8,24 +8,24 @@ use crate::tolerance::{Accepted, Tolerance, Verdict};
 /// Judges a result; a subnormal input may have been read as 0.
 pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32], thoroughly: bool) -> Verdict {
     let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
-    let of = |row: &[u32]| judge(tolerance, row, result, result, &formula.exact(row), &*formula.oracle);
-    let plain = of(row);
+    let judged = |row: &[u32]| judge(tolerance, row, result, result, &formula.exact(row), &*formula.oracle);
+    let plain = judged(row);
     if plain.holds() || plain.nonfinite {
         return plain;
     }
     flushed(formula, row)
         .iter()
-        .map(|row| of(row))
+        .map(|row| judged(row))
         .fold(plain, |best, next| if next.ratio < best.ratio { next } else { best })
 }
 
 /// Returns the results that hold at a row on a device that errs as far as it may: by [`Tolerance::accepted`], for the
 /// row as it is and as a flushing device may see it.
 pub fn accepted(formula: &Formula, tolerance: &Tolerance, row: &[u32]) -> Vec<Accepted> {
-    let of = |row: &[u32]| tolerance.accepted(row, &formula.exact(row), &*formula.oracle);
-    let mut all = of(row);
+    let results_of = |row: &[u32]| tolerance.accepted(row, &formula.exact(row), &*formula.oracle);
+    let mut all = results_of(row);
     if has_subnormals(formula, row) {
-        for more in flushed(formula, row).iter().flat_map(|row| of(row)) {
+        for more in flushed(formula, row).iter().flat_map(|row| results_of(row)) {
             if !all.iter().any(|known| known.covers(&more)) {
                 all.push(more);
             }

@@ -108,19 +108,19 @@ impl Finder<'_> {
         let chance = mix(seed ^ mix(!attempt));
         let moving = (chance % draws.len() as u64) as usize;
         let [mut near, mut far] = [draws[moving], (chance >> 32) as u32];
-        let mut at = |place: u32| {
+        let mut row_at = |place: u32| {
             draws[moving] = place;
             domain.of_draws(&draws)
         };
-        let (way_near, way_far) = (self.way(&at(near))?, self.way(&at(far))?);
+        let (way_near, way_far) = (self.way(&row_at(near))?, self.way(&row_at(far))?);
         if way_near == way_far {
             return Ok(None);
         }
         while near.abs_diff(far) > 1 {
             let middle = near.midpoint(far);
-            if self.way(&at(middle))? == way_near { near = middle } else { far = middle }
+            if self.way(&row_at(middle))? == way_near { near = middle } else { far = middle }
         }
-        let drawn = [at(near), at(far)];
+        let drawn = [row_at(near), row_at(far)];
         Ok(self.between(&drawn[0], &drawn[1])?.map(|seam| Seam { drawn: drawn.to_vec(), ..seam }))
     }
 
@@ -309,7 +309,7 @@ pub fn beside(seam: &Seam) -> Vec<Words> {
 /// all of a jump. Returns `None` if a discrete result changes, which shows by itself.
 pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64> {
     let [start, end] = seam.sides.each_ref().map(|side| formula.numbers(side));
-    let at = |place: f64| {
+    let exact_at = |place: f64| {
         let mut point = start.clone();
         point[seam.word] = place;
         let mut exact = Vec::new();
@@ -317,7 +317,7 @@ pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64
         exact
     };
     let (mut low, mut high) = (start[seam.word], end[seam.word]);
-    let (mut at_low, mut at_high) = (at(low), at(high));
+    let (mut at_low, mut at_high) = (exact_at(low), exact_at(high));
     let all = tolerance.apart(&at_low, &at_high)?;
     let mut left = all;
     for _ in 0..HALVINGS {
@@ -325,7 +325,7 @@ pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64
             return None;
         }
         let middle = 0.5 * (low + high);
-        let at_middle = at(middle);
+        let at_middle = exact_at(middle);
         let below = tolerance.apart(&at_low, &at_middle).unwrap_or(0.0);
         let above = tolerance.apart(&at_middle, &at_high).unwrap_or(0.0);
         left = below.max(above);

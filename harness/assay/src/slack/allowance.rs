@@ -111,12 +111,12 @@ impl Machine for Recorder<'_> {
             // through the power.
             [logarithm, product, power] => {
                 let base = operation.function.map_or(1.0, |(_, base)| base);
-                let of = |function, (exact, slack): (Exact, Slack)| self.accuracy.reach(function, exact, slack);
+                let reach_of = |function, (exact, slack): (Exact, Slack)| self.accuracy.reach(function, exact, slack);
                 // The derivative with respect to x is y x^(y - 1), so this is |y| x^y.
                 let by_logarithm = (operation.partials[0] * logarithm.0.value.exp2()).abs();
-                let exponent = of(Some((Float::Log2, base)), logarithm) * by_logarithm;
-                let exponent = exponent + of(None, product) * power.0.value.abs();
-                of(Some((Float::Exp2, product.0.value as f32)), power) + std::f64::consts::LN_2 * exponent
+                let exponent = reach_of(Some((Float::Log2, base)), logarithm) * by_logarithm;
+                let exponent = exponent + reach_of(None, product) * power.0.value.abs();
+                reach_of(Some((Float::Exp2, product.0.value as f32)), power) + std::f64::consts::LN_2 * exponent
             }
             _ => self.steps.iter().map(|(exact, slack)| self.accuracy.reach(operation.function, *exact, *slack)).sum(),
         };
@@ -299,13 +299,13 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_function() {
-        let (at, step) = ([0.625f32, 1.75f32], 1.0 / 256.0);
+        let (arguments, step) = ([0.625f32, 1.75f32], 1.0 / 256.0);
         for expression in EXPRESSIONS {
             let program = program(expression);
-            let found = of(&program, at).by_argument;
+            let found = of(&program, arguments).by_argument;
             for (place, derivative) in found[0].iter().enumerate() {
                 let beside = |sign: f32| {
-                    let mut moved = at;
+                    let mut moved = arguments;
                     moved[place] += sign * step;
                     value(&program, moved, &mut Nearest)
                 };
@@ -323,7 +323,7 @@ mod tests {
         let unit = 2f64.powi(-23);
         // Exact operations; one rounding; a rounding in the unit of 8192 that the difference leaves;
         // a quotient and functions with bounds of their own.
-        for (expression, at, reach) in [
+        for (expression, arguments, reach) in [
             ("x + y", [0.5, 0.25], 0.0),
             ("x * 2.0f", [0.3, 0.0], 0.0),
             ("x + y", [1.0, 1e-9], unit),
@@ -332,7 +332,7 @@ mod tests {
             ("sin(x)", [1.0, 0.0], 2f64.powi(-11)),
             ("0.3f * sin(x)", [0.5, 0.0], f64::from(0.3f32) * 2f64.powi(-11) + unit / 8.0),
         ] {
-            let found = of(&program(expression), at).reach[0];
+            let found = of(&program(expression), arguments).reach[0];
             assert!((found - reach).abs() <= 1e-9 * reach, "{expression}: {found:e}, not {reach:e}");
         }
     }
@@ -344,16 +344,16 @@ mod tests {
             let program = program(expression);
             for row in 0..64 {
                 let share = |place: u64| (mix(row ^ mix(place)) >> 40) as f32 / 16_777_216.0;
-                let at = [0.1 + 0.8 * share(1), 1.1 + 2.0 * share(2)];
-                let nearest = value(&program, at, &mut Nearest);
-                let reach = of(&program, at).reach[0];
+                let arguments = [0.1 + 0.8 * share(1), 1.1 + 2.0 * share(2)];
+                let nearest = value(&program, arguments, &mut Nearest);
+                let reach = of(&program, arguments).reach[0];
                 for key in 0..64 {
                     let key = mix(key ^ mix(row));
-                    let found = value(&program, at, &mut Device::new(Mode::of(key), key));
+                    let found = value(&program, arguments, &mut Device::new(Mode::of(key), key));
                     // The result under rounding to nearest is itself off by at most as much.
                     assert!(
                         (found - nearest).abs() <= 2.001 * reach,
-                        "{expression} at {at:?}: {found}, {nearest} ± {reach:e}"
+                        "{expression} at {arguments:?}: {found}, {nearest} ± {reach:e}"
                     );
                 }
             }

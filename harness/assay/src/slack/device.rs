@@ -209,13 +209,13 @@ impl Machine for Device<'_> {
     }
 
     #[inline(always)]
-    fn fused(&mut self, at: usize, products: [bool; 2]) -> Option<usize> {
+    fn fused(&mut self, place: usize, products: [bool; 2]) -> Option<usize> {
         if self.mode.fuses == Habit::Never || products == [false, false] {
             return None;
         }
         // The choice depends on the place in the program: a compiler either fuses an operation or
         // does not.
-        let chance = mix(self.key ^ mix(at as u64));
+        let chance = mix(self.key ^ mix(place as u64));
         if self.mode.fuses == Habit::Sometimes && chance & 1 == 0 {
             return None;
         }

@@ -42,35 +42,36 @@ const AROUND: [f64; 2] = [-1e3, 1e3];
 const POSITIVE: [f64; 2] = [1e-3, 1e3];
 
 fn operations() -> Vec<Operation> {
-    let of = |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed, is_loose: false };
+    let strict =
+        |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed, is_loose: false };
     let loosely =
         |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed, is_loose: true };
     let rounded = |exact, _, _| ulps(1.0, exact);
     let wave = |_, _, _| 2f64.powi(-11);
     vec![
-        of("x + y", [AROUND, AROUND], |x, y| x + y, rounded),
-        of("x - y", [AROUND, AROUND], |x, y| x - y, rounded),
-        of("x * y", [AROUND, AROUND], |x, y| x * y, rounded),
-        of("x / y", [AROUND, POSITIVE], |x, y| x / y, |exact, _, _| ulps(2.5, exact)),
-        of("inverseSqrt(x)", [POSITIVE, AROUND], |x, _| 1.0 / x.sqrt(), |exact, _, _| ulps(2.0, exact)),
+        strict("x + y", [AROUND, AROUND], |x, y| x + y, rounded),
+        strict("x - y", [AROUND, AROUND], |x, y| x - y, rounded),
+        strict("x * y", [AROUND, AROUND], |x, y| x * y, rounded),
+        strict("x / y", [AROUND, POSITIVE], |x, y| x / y, |exact, _, _| ulps(2.5, exact)),
+        strict("inverseSqrt(x)", [POSITIVE, AROUND], |x, _| 1.0 / x.sqrt(), |exact, _, _| ulps(2.0, exact)),
         // 2 ulp of the inverse, which may be twice as many of the root, and 2.5 ulp of a quotient.
         loosely("sqrt(x)", [POSITIVE, AROUND], |x, _| x.sqrt(), |exact, _, _| ulps(4.0 + 2.5 + 1e-5, exact)),
-        of("exp(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
-        of("exp2(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp2(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
-        of("log(x)", [[2.5, 1e3], AROUND], |x, _| x.ln(), |exact, _, _| ulps(3.0, exact)),
-        of("log(x)", [[0.5, 2.0], AROUND], |x, _| x.ln(), |_, _, _| 2f64.powi(-21)),
-        of("log2(x)", [[1e-3, 0.4], AROUND], |x, _| x.log2(), |exact, _, _| ulps(3.0, exact)),
-        of("sin(x)", [[-3.0, 3.0], AROUND], |x, _| x.sin(), wave),
-        of("cos(x)", [[-3.0, 3.0], AROUND], |x, _| x.cos(), wave),
-        of("atan(x)", [POSITIVE, AROUND], |x, _| x.atan(), |exact, _, _| ulps(4096.0, exact)),
-        of("atan2(x, y)", [POSITIVE, POSITIVE], f64::atan2, |exact, _, _| ulps(4096.0, exact)),
+        strict("exp(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
+        strict("exp2(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp2(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
+        strict("log(x)", [[2.5, 1e3], AROUND], |x, _| x.ln(), |exact, _, _| ulps(3.0, exact)),
+        strict("log(x)", [[0.5, 2.0], AROUND], |x, _| x.ln(), |_, _, _| 2f64.powi(-21)),
+        strict("log2(x)", [[1e-3, 0.4], AROUND], |x, _| x.log2(), |exact, _, _| ulps(3.0, exact)),
+        strict("sin(x)", [[-3.0, 3.0], AROUND], |x, _| x.sin(), wave),
+        strict("cos(x)", [[-3.0, 3.0], AROUND], |x, _| x.cos(), wave),
+        strict("atan(x)", [POSITIVE, AROUND], |x, _| x.atan(), |exact, _, _| ulps(4096.0, exact)),
+        strict("atan2(x, y)", [POSITIVE, POSITIVE], f64::atan2, |exact, _, _| ulps(4096.0, exact)),
         loosely("acos(x)", [[0.0, 0.5], AROUND], |x, _| x.acos(), |exact, _, _| ulps(4096.0, exact) + 1e-6),
         loosely("asin(x)", [[0.0, 0.1], AROUND], |x, _| x.asin(), |_, _, _| 6.81e-5 + 4e-6),
-        of("abs(x)", [AROUND, AROUND], |x, _| x.abs(), |_, _, _| 0.0),
-        of("max(x, y)", [AROUND, AROUND], f64::max, |_, _, _| 0.0),
-        of("floor(x)", [AROUND, AROUND], |x, _| x.floor(), |_, _, _| 0.0),
-        of("x * 2.0", [AROUND, AROUND], |x, _| 2.0 * x, |_, _, _| 0.0),
-        of("x - x", [AROUND, AROUND], |_, _| 0.0, |_, _, _| 0.0),
+        strict("abs(x)", [AROUND, AROUND], |x, _| x.abs(), |_, _, _| 0.0),
+        strict("max(x, y)", [AROUND, AROUND], f64::max, |_, _, _| 0.0),
+        strict("floor(x)", [AROUND, AROUND], |x, _| x.floor(), |_, _, _| 0.0),
+        strict("x * 2.0", [AROUND, AROUND], |x, _| 2.0 * x, |_, _, _| 0.0),
+        strict("x - x", [AROUND, AROUND], |_, _| 0.0, |_, _, _| 0.0),
     ]
 }
 
@@ -205,19 +206,19 @@ fn the_identity_changes_no_bit() {
 #[test]
 fn a_sum_of_far_apart_magnitudes_is_rounded_either_way() {
     let sum = program("fn f(x: f32, y: f32) -> f32 { return x + y; }");
-    let at = |direction, x: f32, y: f32| run(&sum, towards(direction), 0, &[x, y]);
+    let rounded = |direction, x: f32, y: f32| run(&sum, towards(direction), 0, &[x, y]);
     for tiny in [1e-45f32, f32::MIN_POSITIVE, 1e-20] {
-        assert_eq!(at(Direction::Up, 1.0, tiny), 1.0f32.next_up(), "{tiny:e}");
-        assert_eq!(at(Direction::Down, 1.0, tiny), 1.0, "{tiny:e}");
-        assert_eq!(at(Direction::Up, 1.0, -tiny), 1.0, "{tiny:e}");
-        assert_eq!(at(Direction::Down, 1.0, -tiny), 1.0f32.next_down(), "{tiny:e}");
-        assert_eq!(at(Direction::Up, f32::MAX, -tiny), f32::MAX, "{tiny:e}");
+        assert_eq!(rounded(Direction::Up, 1.0, tiny), 1.0f32.next_up(), "{tiny:e}");
+        assert_eq!(rounded(Direction::Down, 1.0, tiny), 1.0, "{tiny:e}");
+        assert_eq!(rounded(Direction::Up, 1.0, -tiny), 1.0, "{tiny:e}");
+        assert_eq!(rounded(Direction::Down, 1.0, -tiny), 1.0f32.next_down(), "{tiny:e}");
+        assert_eq!(rounded(Direction::Up, f32::MAX, -tiny), f32::MAX, "{tiny:e}");
     }
     // A result that f32 can represent is exact, subnormals included.
     let exact = [(1.0, 2.0, 3.0), (1e-45, 1e-45, 3e-45), (-1.0, 1.0, 0.0), (f32::MIN_POSITIVE, -1e-45, 1.1754942e-38)];
     for (x, y, result) in exact {
         for direction in [Direction::Up, Direction::Down] {
-            assert_eq!(at(direction, x, y), result, "{x:e} + {y:e}");
+            assert_eq!(rounded(direction, x, y), result, "{x:e} + {y:e}");
         }
     }
     let product = program("fn f(x: f32, y: f32) -> f32 { return x * y; }");

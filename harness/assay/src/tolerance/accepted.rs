@@ -181,17 +181,17 @@ mod tests {
             let hit = numbers[0] > 1.0;
             result.extend([if hit { 5.0 } else { -5.0 }, f64::from(u8::from(hit))]);
         };
-        let at = |x: f32| {
+        let accepted_at = |x: f32| {
             let mut exact = Vec::new();
             oracle(&[f64::from(x)], &mut exact);
             tolerance.accepted(&[x.to_bits()], &exact, &oracle)
         };
-        let both = at(1.0);
+        let both = accepted_at(1.0);
         assert_eq!(both.len(), 2, "{both:?}");
         let any = |result: [f64; 2]| both.iter().any(|accepted| accepted.holds(&result));
         assert!(any([5.0, 1.0]) && any([-5.0, 0.0]));
         assert!(!any([5.0, 0.0]) && !any([-5.0, 1.0]));
-        assert_eq!(at(1.1).len(), 1);
+        assert_eq!(accepted_at(1.1).len(), 1);
     }
 
     #[test]

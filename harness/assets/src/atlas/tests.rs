@@ -116,14 +116,14 @@ fn with_halo_drawn(mesh: &Mesh) -> Mesh {
 /// from the chart that it surrounds than allowed.
 fn check_halo(name: &str, mesh: &Mesh, halo: f32) {
     let numbers = chart_numbers(&with_halo_drawn(mesh));
-    let (own, about) = numbers.split_at(mesh.triangle_count());
+    let (charted, about) = numbers.split_at(mesh.triangle_count());
     let parts = |triangle: &[u32]| {
         [corners_of(&mesh.positions, triangle), corners_of(&mesh.normals, triangle)]
             .map(|part| part.map(|vector| vector.to_array().map(f32::to_bits)))
     };
     let mut charts_of: HashMap<_, Vec<usize>> = HashMap::new();
     let mut corners: HashMap<usize, Vec<Vec3>> = HashMap::new();
-    for (triangle, &chart) in mesh.indices.chunks_exact(3).zip(own) {
+    for (triangle, &chart) in mesh.indices.chunks_exact(3).zip(charted) {
         charts_of.entry(parts(triangle)).or_default().push(chart);
         corners.entry(chart).or_default().extend(corners_of(&mesh.positions, triangle));
     }

@@ -55,8 +55,8 @@ fn the_outline_ends_on_the_axis_and_bends_evenly() {
     // points.
     let (h, spans) = (1e-3, (OUTLINE.len() - 1) as f64);
     for k in 1..OUTLINE.len() - 1 {
-        let at = |offset: f64| outline((k as f64 + offset * h) / spans);
-        let second = |from: f64| (at(from) - 2.0 * at(from + 1.0) + at(from + 2.0)) / (h * h);
+        let point = |offset: f64| outline((k as f64 + offset * h) / spans);
+        let second = |from: f64| (point(from) - 2.0 * point(from + 1.0) + point(from + 2.0)) / (h * h);
         let jump = (second(-2.0) - second(0.0)).length();
         assert!(jump < 8.0 * 13.0 * 2.0 * h && second(0.0).length() < 20.0, "{k}: {jump}");
     }

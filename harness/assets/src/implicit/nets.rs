@@ -69,8 +69,8 @@ impl Net {
             let surfaces = surfaces(within);
             let mut vertices = [usize::MAX; 12];
             for first in (0..12).filter(|&edge| surfaces[edge] == Some(edge)) {
-                let own = (0..12).filter(|&edge| surfaces[edge] == Some(first));
-                let crossings = own.clone().map(|edge| {
+                let edges = (0..12).filter(|&edge| surfaces[edge] == Some(first));
+                let crossings = edges.clone().map(|edge| {
                     let [from, to] = EDGES[edge].map(corner);
                     let (a, b) = (values[number(from)], values[number(to)]);
                     // Next to the outermost corners, which count as infinitely far outside: the
@@ -84,8 +84,8 @@ impl Net {
                     };
                     grid.place(from).lerp(grid.place(to), share)
                 });
-                let position = crossings.sum::<DVec3>() / own.clone().count() as f64;
-                own.for_each(|edge| vertices[edge] = net.vertices.len());
+                let position = crossings.sum::<DVec3>() / edges.clone().count() as f64;
+                edges.for_each(|edge| vertices[edge] = net.vertices.len());
                 net.vertices.push(Vertex { position, width: grid.width(cell) });
             }
             if surfaces.iter().any(Option::is_some) {

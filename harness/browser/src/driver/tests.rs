@@ -128,7 +128,7 @@ fn a_window_has_its_size_and_its_colours() {
     // A PNG's width and height stand in its header.
     let size = |png: &[u8]| {
         assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
-        [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes")))
+        [16, 20].map(|offset| u32::from_be_bytes(png[offset..offset + 4].try_into().expect("four bytes")))
     };
     let light = page.screenshot(320, 480, false).expect("a picture");
     let dark = page.screenshot(320, 480, true).expect("a picture");

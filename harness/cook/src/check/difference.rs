@@ -99,9 +99,9 @@ fn apart(shape: &Shape, one: &[u32], other: &[u32]) -> (f64, bool) {
         };
         let (one, other) = (floats(one), floats(other));
         let scale = one.iter().chain(&other).fold(0.0, |scale: f64, float| scale.max(float.abs()));
-        let apart = largest(one.iter().zip(&other).map(|(one, other)| (one - other).abs()));
+        let difference = largest(one.iter().zip(&other).map(|(one, other)| (one - other).abs()));
         // JSON has neither infinity nor NaN.
-        if apart.is_finite() && scale.is_finite() { apart / ulp_of(scale) } else { f64::MAX }
+        if difference.is_finite() && scale.is_finite() { difference / ulp_of(scale) } else { f64::MAX }
     });
     (distances.fold(0.0, f64::max), false)
 }

@@ -57,9 +57,9 @@ impl UserFile {
             return Err(in_path(error.into()));
         }
         if formulas.is_empty() {
-            let of = filter.map_or("the cookbook".to_owned(), |module| format!("module `{module}`"));
+            let scope = filter.map_or("the cookbook".to_owned(), |module| format!("module `{module}`"));
             let message =
-                format!("{}: defines no function of {of} to check; keep the names, or see `./cook list`", self.path);
+                format!("{}: defines no function of {scope} to check; keep the names, or see `./cook list`", self.path);
             return Err(CheckError::File(message));
         }
         let by_function = filter.is_some_and(|filter| filter.contains("::"));

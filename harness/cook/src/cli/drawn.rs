@@ -225,9 +225,9 @@ impl Drawn {
             scene = scene.seen_from(polar, azimuth);
         }
         let (asked, notes) = self.asked.settings(&scene)?;
-        let curvature = self.diffuse.as_ref().and_then(|of| of.curvature);
-        let shadows = self.diffuse.as_ref().and_then(|of| of.shadows);
-        let extinction_scale = self.optical_path.as_ref().and_then(|of| of.extinction_scale);
+        let curvature = self.diffuse.as_ref().and_then(|options| options.curvature);
+        let shadows = self.diffuse.as_ref().and_then(|options| options.shadows);
+        let extinction_scale = self.optical_path.as_ref().and_then(|options| options.extinction_scale);
         let settings = Settings {
             exposure: self.exposure,
             samples: self.samples,
@@ -237,20 +237,20 @@ impl Drawn {
                 shadows: shadows.unwrap_or(asked.diffuse.shadows),
                 ..asked.diffuse
             },
-            diffusion: self.diffusion.as_ref().map_or(asked.diffusion, |of| DiffusionOptions {
-                cycles: of.cycles.unwrap_or(asked.diffusion.cycles),
-                residual: of.residual,
+            diffusion: self.diffusion.as_ref().map_or(asked.diffusion, |options| DiffusionOptions {
+                cycles: options.cycles.unwrap_or(asked.diffusion.cycles),
+                residual: options.residual,
                 ..asked.diffusion
             }),
             optical_path: extinction_scale
                 .map_or(asked.optical_path, |extinction_scale| OpticalPathOptions { extinction_scale }),
             ..asked
         };
-        let own = [
+        let techniques = [
             Given {
                 technique: "curvature",
                 flags: given([("--curvature", curvature.is_some())]),
-                draws: |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
+                draws: |rung, _| matches!(rung, Rung::Diffuse(diffuse) if !diffuse.is_lambert()),
             },
             Given {
                 technique: "optical paths",
@@ -259,8 +259,8 @@ impl Drawn {
             },
             Given {
                 technique: "diffusion",
-                flags: self.diffusion.as_ref().map_or_else(Vec::new, |of| {
-                    given([("--cycles", of.cycles.is_some()), ("--residual", of.residual)])
+                flags: self.diffusion.as_ref().map_or_else(Vec::new, |options| {
+                    given([("--cycles", options.cycles.is_some()), ("--residual", options.residual)])
                 }),
                 draws: |rung, _| matches!(rung, Rung::Diffusion(_)),
             },
@@ -269,7 +269,7 @@ impl Drawn {
             refuse_without_meaning(&scene, &settings, Effect::TranslucentShadow, "--shadows")?;
         }
         let gem = self.gem.iter().flat_map(Gem::given);
-        refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;
+        refuse_what_is_ignored(gem.chain(techniques).chain(others), &scene, &settings)?;
         if let Some(outside) = settings.gem.outside
             && let Some(effect) = outside.effect()
             && !settings.without.has(effect)

@@ -60,7 +60,7 @@ fn rung_rows() -> Vec<RungRow> {
         };
         let ladder = technique.ladder();
         // By diffusion on request: the ladder is that of light through a body.
-        let rungs = |of: &Technique| Some(of.ladder()?.steps.iter().map(|step| &step.rung).collect::<Vec<_>>());
+        let rungs = |one: &Technique| Some(one.ladder()?.steps.iter().map(|step| &step.rung).collect::<Vec<_>>());
         let mut before = Technique::ALL.iter().take_while(|other| **other != technique);
         if ladder.is_some() && before.any(|other| rungs(other) == rungs(&technique)) {
             continue;

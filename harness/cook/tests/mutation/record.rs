@@ -65,11 +65,11 @@ impl Record {
     pub(crate) fn of_sources(gpu: &Gpu, modules: &[&str], listed: &BTreeMap<&str, String>) -> Self {
         let engine = hash(&ENGINE.map(|path| root().join(path)));
         let module = |name: &&str| {
-            let own = crates_of(name);
+            let crates = crates_of(name);
             let mut texts = vec![root().join(format!("wgsl/{name}.wgsl"))];
             let of_crate =
                 |name: &String| ["Cargo.toml", "src"].map(|part| root().join("crates").join(name).join(part));
-            texts.extend(own.iter().flat_map(of_crate));
+            texts.extend(crates.iter().flat_map(of_crate));
             let hash = text_hash(&(hash(&texts) + listed.get(name).map_or("", String::as_str)));
             ((*name).to_owned(), Module { hash, mutants: 0, listed: 0 })
         };

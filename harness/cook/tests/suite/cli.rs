@@ -58,8 +58,8 @@ fn plan_prints_one_json_document() {
     let effects = rows("effects");
     assert!(effects.iter().all(|row| row["on"].is_boolean() && !text(row, "reason").is_empty()));
     let on = |material: &str| {
-        let of = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
-        of.map(|row| text(row, "effect")).collect::<Vec<_>>()
+        let drawn = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
+        drawn.map(|row| text(row, "effect")).collect::<Vec<_>>()
     };
     assert_eq!(on("diamond"), ["convex_trace", "dispersion", "bounds_trace"]);
     assert_eq!(on("ruby"), ["convex_trace", "absorption", "bounds_trace"]);
@@ -359,7 +359,7 @@ fn main(
         .global_variables
         .iter()
         .filter_map(|(_, variable)| Some((variable.binding?, variable.name.as_deref()?)))
-        .map(|(at, name)| (at.group, at.binding, name))
+        .map(|(binding, name)| (binding.group, binding.binding, name))
         .collect();
     bound.sort_unstable();
     let expected = [(0, 0, "eye"), (2, 0, "material"), (2, 1, "planes"), (2, 2, "facet_map"), (2, 3, "stone")];

@@ -124,7 +124,7 @@ fn a_changed_const_is_noticed_though_no_function_reads_it() {
 #[test]
 fn materials_have_the_published_index_and_dispersion() {
     use lapidary_dispersion as mirror;
-    let at = |material, line: f64| f64::from(mirror::sellmeier(material, line as f32));
+    let index_at = |material, line: f64| f64::from(mirror::sellmeier(material, line as f32));
     for (name, material, index, spread) in [
         ("diamond", mirror::DISPERSION_DIAMOND, (2.417, 0.002), (0.044, 0.001)),
         ("corundum", mirror::DISPERSION_CORUNDUM, (1.769, 0.002), (0.018, 0.001)),
@@ -132,12 +132,12 @@ fn materials_have_the_published_index_and_dispersion() {
         ("cubic zirconia", mirror::DISPERSION_CUBIC_ZIRCONIA, (2.165, 0.015), (0.060, 0.006)),
     ] {
         // Fraunhofer's lines themselves, in nm.
-        let [b, d, g] = [686.72, 589.3, 430.79].map(|line| at(material, line));
+        let [b, d, g] = [686.72, 589.3, 430.79].map(|line| index_at(material, line));
         println!("{name}: n_D {d:.4}, n_G - n_B {:.4}", g - b);
         assert!((d - index.0).abs() < index.1, "{name}: n_D {d}, published {index:?}");
         assert!((g - b - spread.0).abs() < spread.1, "{name}: n_G - n_B {}, published {spread:?}", g - b);
     }
-    let [d, f, c] = [587.562, 486.134, 656.281].map(|line| at(mirror::DISPERSION_CROWN_GLASS, line));
+    let [d, f, c] = [587.562, 486.134, 656.281].map(|line| index_at(mirror::DISPERSION_CROWN_GLASS, line));
     assert!((d - 1.51680).abs() < 2e-5, "N-BK7: n_d {d}, in the catalogue 1.51680");
     let abbe = (d - 1.0) / (f - c);
     assert!((abbe - 64.17).abs() < 0.03, "N-BK7: V_d {abbe}, in the catalogue 64.17");

@@ -109,11 +109,11 @@ fn what_was_measured_once_is_run_by_the_studies() {
     }
     // They are built by their own manifest, in the folder of the other builds.
     let built = std::fs::read_to_string(clone.at("built")).expect("cargo ran");
-    let own = |line: &&str| line.contains("studies/Cargo.toml");
+    let is_study = |line: &&str| line.contains("studies/Cargo.toml");
     let target = format!(", {}", clone.at("target").display());
-    assert_eq!(built.lines().filter(own).count(), 8, "{built}");
+    assert_eq!(built.lines().filter(is_study).count(), 8, "{built}");
     assert!(
-        built.lines().filter(own).all(|line| line.contains("lapidary-studies") && line.ends_with(&target)),
+        built.lines().filter(is_study).all(|line| line.contains("lapidary-studies") && line.ends_with(&target)),
         "{built}"
     );
 }

@@ -126,8 +126,8 @@ fn a_planted_jump_is_found_at_its_branch() {
         // thousand.
         ("srgb_encode", "0.0031308f", "0.0034f", "0.0034f"),
     ];
-    for (function, from, to, at) in plants {
+    for (function, from, to, seam) in plants {
         let faults = planted(function, from, to);
-        assert!(faults.iter().any(|fault| fault.line.contains(at)), "{function}, {at}: {faults:?}");
+        assert!(faults.iter().any(|fault| fault.line.contains(seam)), "{function}, {seam}: {faults:?}");
     }
 }

@@ -285,9 +285,9 @@ fn failing_inputs_go_where_they_are_asked_to_and_never_into_a_users_check() {
     std::fs::write(&kept, nan).expect("a file");
     assert_eq!(run(&reflection(RIGHT), &["--failures", "kept"]).code, Some(0));
     // The cookbook's own function is tested with them.
-    let own = cook(folder.path(), &["check", "refraction::reflect", "--cases", "500", "--failures", "kept"]);
-    assert_eq!(own.code, Some(1), "{own:?}");
-    assert!(own.stdout.contains("kept in kept/refraction_reflect.txt"), "{own:?}");
+    let outcome = cook(folder.path(), &["check", "refraction::reflect", "--cases", "500", "--failures", "kept"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stdout.contains("kept in kept/refraction_reflect.txt"), "{outcome:?}");
 }
 
 #[test]

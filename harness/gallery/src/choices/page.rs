@@ -89,10 +89,10 @@ mod tests {
         assert!(sixty.nearest.holds, "{sixty:?}");
         let stones = Kind::named("convex").expect("there");
         let choices = of_kind(stones);
-        let at = choices.iter().position(|choice| choice.rung == sixty.nearest.rung).expect("a row of the table");
-        assert_eq!(choices[at].sixty.as_deref(), Some("yes"), "{choices:?}");
+        let row = choices.iter().position(|choice| choice.rung == sixty.nearest.rung).expect("a row of the table");
+        assert_eq!(choices[row].sixty.as_deref(), Some("yes"), "{choices:?}");
         // Rows stand by error, the greatest first.
-        assert!(choices[at + 1..].iter().all(|choice| choice.sixty.as_deref() != Some("yes")), "{choices:?}");
+        assert!(choices[row + 1..].iter().all(|choice| choice.sixty.as_deref() != Some("yes")), "{choices:?}");
         let default = sixty.default.expect("the record has its frame");
         assert!(choices.iter().any(|choice| choice.rung == default.rung && choice.is_default), "{default:?}");
     }

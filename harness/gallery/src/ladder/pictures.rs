@@ -92,8 +92,8 @@ fn place(kind: &Kind) -> String {
 
 /// Lists the rungs of a ladder that have a picture of their own.
 fn drawn(kind: &Kind, steps: &[&'static Step]) -> Vec<&'static str> {
-    let own = steps.iter().map(|step| step.rung.as_str()).filter(|rung| kind.pictured(rung, steps) == *rung);
-    own.chain(kind.others.iter().copied()).collect()
+    let rungs = steps.iter().map(|step| step.rung.as_str()).filter(|rung| kind.pictured(rung, steps) == *rung);
+    rungs.chain(kind.others.iter().copied()).collect()
 }
 
 /// Whether a choice is made by this rung's picture: it is on the front, a default, the paper's, or asked for by name.
@@ -166,8 +166,8 @@ fn described(adapter: &str, kind: &Kind, rung: &str, drawn: &str) -> RungPicture
 fn shrunk(picture: &Picture, side: u32) -> Picture {
     let scale = f64::from(picture.width) / f64::from(side);
     // The share of each old pixel in a new one, along an axis.
-    let shares = |at: u32| -> Vec<(usize, f64)> {
-        let [start, end] = [f64::from(at) * scale, f64::from(at + 1) * scale];
+    let shares = |new_pixel: u32| -> Vec<(usize, f64)> {
+        let [start, end] = [f64::from(new_pixel) * scale, f64::from(new_pixel + 1) * scale];
         let old = start.floor() as usize..(end.ceil() as usize).min(picture.width as usize);
         old.map(|old| (old, (end.min(old as f64 + 1.0) - start.max(old as f64)) / scale)).collect()
     };
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn a_smaller_picture_has_the_means_of_the_larger_one() {
         // Three columns, 1, 2 and 6, as two: each takes half of the middle one.
-        let linear: Vec<[f32; 4]> = (0..9).map(|at| [[1.0, 2.0, 6.0][at % 3], at as f32, 0.0, 1.0]).collect();
+        let linear: Vec<[f32; 4]> = (0..9).map(|index| [[1.0, 2.0, 6.0][index % 3], index as f32, 0.0, 1.0]).collect();
         let encoded = vec![[0; 4]; 9];
         let picture = Picture { width: 3, height: 3, linear, encoded, lost: None, walked: None, notes: Vec::new() };
         let small = shrunk(&picture, 2);

@@ -115,9 +115,9 @@ fn drawings(
     let mut series = vec![plot::Series { stairs: true, ..plot::Series::line("", GREY, 2, best) }];
     // A series a rung: the keyboard goes to them by time.
     series.extend(steps.iter().map(|step| {
-        let at = kind.series_of(&step.rung) % MARKERS.len();
-        let points = vec![point(kind, step, is_front(&step), MARKERS[at], href(&step.rung))];
-        plot::Series { points, ..plot::Series::line("", COLORS[at], 0, []) }
+        let index = kind.series_of(&step.rung) % MARKERS.len();
+        let points = vec![point(kind, step, is_front(&step), MARKERS[index], href(&step.rung))];
+        plot::Series { points, ..plot::Series::line("", COLORS[index], 0, []) }
     }));
     let x = Axis { limit, ..Axis::log("milliseconds a picture") };
     let plot = plot::Plot { file: "", caption: String::new(), x, y: Axis::log(kind.error), series };
@@ -155,8 +155,8 @@ fn point(kind: &Kind, step: &Step, front: bool, marker: Marker, href: Option<Str
 /// Returns the series of the legend.
 fn series(kind: &Kind, steps: &[&Step]) -> Vec<Option<Series>> {
     let all = kind.series.iter().zip(MARKERS).enumerate();
-    all.map(|(at, ((_, name), marker))| {
-        let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == at);
+    all.map(|(index, ((_, name), marker))| {
+        let is_there = steps.iter().any(|step| kind.series_of(&step.rung) == index);
         is_there.then_some(Series { name, mark: marker.path() })
     })
     .collect()
@@ -164,13 +164,13 @@ fn series(kind: &Kind, steps: &[&Step]) -> Vec<Option<Series>> {
 
 /// Says which defaults another rung beats by these times.
 fn beaten(kind: &Kind, ladder: &Ladder) -> Vec<String> {
-    let of = |quality: Quality| {
+    let sentence_of = |quality: Quality| {
         let step = ladder.step(&kind.technique.rung(quality).to_string())?;
         let better = ladder.steps.iter().filter(|other| other.ms < step.ms && other.error < step.error);
         let best = better.min_by(|a, b| a.error.total_cmp(&b.error))?;
         Some(format!("{} is faster here than {quality}’s {}, and errs less.", best.rung, step.rung))
     };
-    Quality::ALL.into_iter().filter_map(of).collect()
+    Quality::ALL.into_iter().filter_map(sentence_of).collect()
 }
 
 /// Says what was timed, and over what is averaged.

@@ -122,14 +122,14 @@ fn what_is_drawn_for_another_rung_has_the_same_error() {
         let steps = kind.steps();
         for step in &steps {
             let pictured = kind.pictured(&step.rung, &steps);
-            let of = steps.iter().find(|other| other.rung == pictured).expect("a measured rung");
+            let pictured_step = steps.iter().find(|other| other.rung == pictured).expect("a measured rung");
             // The same hits or costs give the same picture up to rounding.
             assert!(
-                (step.error / of.error - 1.0).abs() < 1e-3,
+                (step.error / pictured_step.error - 1.0).abs() < 1e-3,
                 "{} by {pictured}: {} {}",
                 step.rung,
                 step.error,
-                of.error
+                pictured_step.error
             );
             twins += usize::from(pictured != step.rung);
         }

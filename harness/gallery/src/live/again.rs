@@ -27,12 +27,13 @@ fn of_resource(uses: &[Uses], resource: u64) -> Vec<usize> {
     let mut open: Vec<usize> = again.iter().copied().collect();
     while let Some(place) = open.pop() {
         let Uses { reads, writes } = &uses[place];
-        for (other, of) in uses.iter().enumerate() {
-            let follows = other > place && !(writes.is_disjoint(&of.reads) && writes.is_disjoint(&of.writes));
+        for (other, used) in uses.iter().enumerate() {
+            let follows = other > place && !(writes.is_disjoint(&used.reads) && writes.is_disjoint(&used.writes));
             // What it reads is, after a whole frame, what the last pass left there.
-            let is_refilled =
-                |filled: &u64| reads.contains(filled) && uses[place..].iter().any(|of| of.writes.contains(filled));
-            let refills = other < place && of.writes.iter().any(is_refilled);
+            let is_refilled = |filled: &u64| {
+                reads.contains(filled) && uses[place..].iter().any(|later| later.writes.contains(filled))
+            };
+            let refills = other < place && used.writes.iter().any(is_refilled);
             if (follows || refills) && again.insert(other) {
                 open.push(other);
             }
@@ -57,7 +58,7 @@ fn uses(document: &Value, texts: &[String], pass: &Value) -> Uses {
             for entry in list(&group["entries"]) {
                 let Some(resource) = entry["resource"].as_u64() else { continue };
                 uses.reads.insert(resource);
-                if changed.iter().any(|(of, binding)| group["group"] == *of && entry["binding"] == *binding) {
+                if changed.iter().any(|(number, binding)| group["group"] == *number && entry["binding"] == *binding) {
                     uses.writes.insert(resource);
                 }
             }

@@ -169,12 +169,13 @@ fn rung(
     found: &mut Found,
 ) -> Result<Rung, LiveError> {
     let live =
-        super::SCENES.iter().find(|of| of.scene == live.scene).ok_or_else(|| LiveError::Rung(name.to_owned()))?;
+        super::SCENES.iter().find(|known| known.scene == live.scene).ok_or_else(|| LiveError::Rung(name.to_owned()))?;
     let toggles = applicable(live, scene, name)?;
     let base_settings = settings(live, name, |toggle| toggle.on)?;
     let base = make(scene, &base_settings)?;
     let moves = moves(live, scene, &base_settings, &base, found)?;
-    let mut moved: BTreeSet<&str> = moves.iter().flat_map(|of| &of.at).map(|place| place.buffer.as_str()).collect();
+    let mut moved: BTreeSet<&str> =
+        moves.iter().flat_map(|movement| &movement.at).map(|place| place.buffer.as_str()).collect();
     moved.extend(["view", "environment map"]);
     let choices: Vec<(usize, bool)> = (0..1 << toggles.len())
         .flat_map(|set| [(set, false), (set, true)])
@@ -184,7 +185,7 @@ fn rung(
         .into_par_iter()
         .map(|(set, map)| {
             let has = |toggle: &Toggle| {
-                toggles.iter().position(|of| of.effect == toggle.effect).map(|place| set >> place & 1 == 1)
+                toggles.iter().position(|other| other.effect == toggle.effect).map(|place| set >> place & 1 == 1)
             };
             let mut settings = settings(live, name, |toggle| has(toggle).unwrap_or(toggle.on))?;
             if map {
@@ -260,7 +261,7 @@ fn store_frame(store: &mut Store, made: Made, moved: &BTreeSet<&str>) -> Result<
         // The renderer makes these once for each frame; a page writes them.
         if is_moved(&place)
             && let Some(usage) = document["resources"][place]["usage"].as_array_mut()
-            && !usage.iter().any(|of| of == "COPY_DST")
+            && !usage.iter().any(|flag| flag == "COPY_DST")
         {
             usage.push("COPY_DST".into());
         }
@@ -279,10 +280,10 @@ fn moves(
     let mut all = Vec::new();
     for slider in live.sliders {
         let (values, start) = slider.values(scene);
-        let of = Sliding { slider, values: &values, start, scene, settings, base };
+        let sliding = Sliding { slider, values: &values, start, scene, settings, base };
         let tables = match slider.moves {
-            Moves::Fields(rule) => of.by_fields(rule),
-            Moves::Scene(change) => of.by_frames(change, found)?,
+            Moves::Fields(rule) => sliding.by_fields(rule),
+            Moves::Scene(change) => sliding.by_frames(change, found)?,
         };
         // Buffers of all bodies often hold the same.
         let mut grouped: Vec<Move> = Vec::new();
@@ -291,8 +292,8 @@ fn moves(
             if !moves_at_all(&nodes, &nodes[start]) || !is_read() {
                 continue;
             }
-            match grouped.iter_mut().find(|of| of.nodes == nodes && of.at[0].field == place.field) {
-                Some(of) => of.at.push(place),
+            match grouped.iter_mut().find(|group| group.nodes == nodes && group.at[0].field == place.field) {
+                Some(group) => group.at.push(place),
                 None => grouped.push(Move { slider: slider.name, at: vec![place], nodes }),
             }
         }

@@ -55,12 +55,12 @@ impl<'a> Fields<'a> {
         let is_named = |resource: &Resource| {
             resource.name == name || resource.name.rsplit_once('/').is_some_and(|(_, last)| last == name)
         };
-        let has = |layout: &StructLayout| layout.fields.iter().any(|of| of.name == field);
+        let has = |layout: &StructLayout| layout.fields.iter().any(|member| member.name == field);
         let held = self.frame.resources.iter().enumerate().filter(|(_, resource)| is_named(resource));
         held.filter(|(_, resource)| layout(resource).is_some_and(has))
-            .map(|(at, resource)| Place {
+            .map(|(index, resource)| Place {
                 buffer: resource.name.clone(),
-                nth: number(self.frame, at),
+                nth: number(self.frame, index),
                 element: 0,
                 field: field.to_owned(),
             })
@@ -87,16 +87,16 @@ pub fn contents(resource: &Resource) -> Option<&[u8]> {
 }
 
 /// Returns the number of a buffer among those that hold a struct and have its name.
-fn number(frame: &Frame, at: usize) -> usize {
-    let name = &frame.resources[at].name;
-    frame.resources[..at].iter().filter(|other| other.name == *name && layout(other).is_some()).count()
+fn number(frame: &Frame, index: usize) -> usize {
+    let name = &frame.resources[index].name;
+    frame.resources[..index].iter().filter(|other| other.name == *name && layout(other).is_some()).count()
 }
 
 /// Returns the place of the resource that a field stands in.
 #[must_use]
 pub fn resource(frame: &Frame, place: &Place) -> Option<usize> {
-    let mut named = (0..frame.resources.len()).filter(|at| {
-        let resource = &frame.resources[*at];
+    let mut named = (0..frame.resources.len()).filter(|index| {
+        let resource = &frame.resources[*index];
         resource.name == place.buffer && layout(resource).is_some()
     });
     named.nth(place.nth)
@@ -105,15 +105,15 @@ pub fn resource(frame: &Frame, place: &Place) -> Option<usize> {
 /// Returns the value of a field; empty if there is none.
 #[must_use]
 pub fn value(frame: &Frame, place: &Place) -> Vec<f32> {
-    let Some(resource) = resource(frame, place).map(|at| &frame.resources[at]) else { return Vec::new() };
+    let Some(resource) = resource(frame, place).map(|index| &frame.resources[index]) else { return Vec::new() };
     let (Some(layout), Some(bytes)) = (layout(resource), contents(resource)) else { return Vec::new() };
     let field = layout.fields.iter().find(|field| field.name == place.field);
     let words = field.map_or(&[][..], |field| &field.offsets);
     words.iter().map(|offset| word(bytes, place.element * layout.size + offset)).collect()
 }
 
-fn word(bytes: &[u8], at: usize) -> f32 {
-    bytes.get(at..at + 4).and_then(|four| four.try_into().ok()).map_or(0.0, f32::from_le_bytes)
+fn word(bytes: &[u8], offset: usize) -> f32 {
+    bytes.get(offset..offset + 4).and_then(|four| four.try_into().ok()).map_or(0.0, f32::from_le_bytes)
 }
 
 /// Returns the fields that differ in another frame of the same structure, with their values there; `None` if anything
@@ -124,7 +124,7 @@ pub fn changed(frame: &Frame, next: &Frame) -> Option<Vec<(Place, Vec<f32>)>> {
         return None;
     }
     let mut all = Vec::new();
-    for (at, (one, other)) in frame.resources.iter().zip(&next.resources).enumerate() {
+    for (index, (one, other)) in frame.resources.iter().zip(&next.resources).enumerate() {
         let (Some(bytes), Some(others)) = (contents(one), contents(other)) else { continue };
         if bytes == others {
             continue;
@@ -141,7 +141,7 @@ pub fn changed(frame: &Frame, next: &Frame) -> Option<Vec<(Place, Vec<f32>)>> {
                 for offset in &field.offsets {
                     explained[start + offset..][..4].copy_from_slice(&others[start + offset..][..4]);
                 }
-                let (buffer, nth) = (one.name.clone(), number(frame, at));
+                let (buffer, nth) = (one.name.clone(), number(frame, index));
                 let place = Place { buffer, nth, element, field: field.name.clone() };
                 let value = field.offsets.iter().map(|offset| word(others, start + offset)).collect();
                 all.push((place, value));
@@ -157,11 +157,11 @@ pub fn changed(frame: &Frame, next: &Frame) -> Option<Vec<(Place, Vec<f32>)>> {
 /// Whether a shader that reads the buffer of a field names the field; others do not notice its value.
 #[must_use]
 pub fn is_read(frame: &Frame, texts: &[String], document: &serde_json::Value, place: &Place) -> bool {
-    let Some(at) = resource(frame, place) else { return false };
+    let Some(index) = resource(frame, place) else { return false };
     let last = place.field.rsplit('.').next().unwrap_or(&place.field);
     let groups = document["bind_groups"].as_array().into_iter().flatten();
     groups
-        .filter(|group| group["entries"].as_array().into_iter().flatten().any(|entry| entry["resource"] == at))
+        .filter(|group| group["entries"].as_array().into_iter().flatten().any(|entry| entry["resource"] == index))
         .filter_map(|group| texts.get(usize::try_from(group["pipeline"].as_u64()?).ok()?))
         .any(|text| names_field(text, last))
 }
@@ -169,8 +169,8 @@ pub fn is_read(frame: &Frame, texts: &[String], document: &serde_json::Value, pl
 /// Whether WGSL text reads a member of this name.
 fn names_field(text: &str, field: &str) -> bool {
     let member = format!(".{field}");
-    text.match_indices(&member).any(|(at, found)| {
-        let next = text[at + found.len()..].chars().next();
+    text.match_indices(&member).any(|(start, found)| {
+        let next = text[start + found.len()..].chars().next();
         !next.is_some_and(|letter| letter.is_alphanumeric() || letter == '_')
     })
 }
@@ -182,8 +182,9 @@ pub fn difference(frame: &Frame, next: &Frame) -> Option<String> {
     if counts(frame) != counts(next) {
         return Some(format!("{:?} resources and pipelines become {:?}", counts(frame), counts(next)));
     }
-    let compiled =
-        |of: &Pipeline| (of.shader.recipe().to_owned(), of.shader.entries().to_vec(), of.shader.overrides().to_vec());
+    let compiled = |pipeline: &Pipeline| {
+        (pipeline.shader.recipe().to_owned(), pipeline.shader.entries().to_vec(), pipeline.shader.overrides().to_vec())
+    };
     for (one, other) in frame.pipelines.iter().zip(&next.pipelines) {
         if one.kind != other.kind || compiled(one) != compiled(other) {
             return Some(format!("pipeline `{}`", one.name));

@@ -53,9 +53,9 @@ fn is_whole(name: &str) {
     let (manifest, live) = (&manifests[name], scene(name));
     assert_eq!(manifest.rungs.len(), live.rungs.len());
     let mut moved: Vec<&str> = Vec::new();
-    for (rung, of) in &manifest.rungs {
-        assert!(!of.frames.is_empty(), "{rung}");
-        for (effects, file) in &of.frames {
+    for (rung, exported) in &manifest.rungs {
+        assert!(!exported.frames.is_empty(), "{rung}");
+        for (effects, file) in &exported.frames {
             let document: Value = serde_json::from_slice(&stored(folder.path(), file)).expect("JSON");
             let resources = document["resources"].as_array().expect("resources");
             for row in resources.iter().filter(|row| row["contents"].is_string()) {
@@ -79,13 +79,17 @@ fn is_whole(name: &str) {
             let first = passes.iter().position(|pass| pass["name"] == "scene").expect("a scene's pass") as u64;
             assert_eq!(again.first(), Some(&first), "{rung} {effects}");
         }
-        for of in &of.moves {
-            let slider = live.sliders.iter().find(|slider| slider.name == of.slider).expect("a slider");
+        for movement in &exported.moves {
+            let slider = live.sliders.iter().find(|slider| slider.name == movement.slider).expect("a slider");
             let (values, start) = slider.values(&Scene::named(live.scene).expect("built in"));
-            assert_eq!(of.nodes.len(), values.len(), "{rung}: {}", of.slider);
-            assert!(of.nodes.iter().flatten().all(|value| value.is_finite()), "{rung}: {}", of.slider);
-            assert!(of.nodes.iter().any(|node| *node != of.nodes[start]), "{rung}: {} moves nothing", of.slider);
-            moved.push(of.slider);
+            assert_eq!(movement.nodes.len(), values.len(), "{rung}: {}", movement.slider);
+            assert!(movement.nodes.iter().flatten().all(|value| value.is_finite()), "{rung}: {}", movement.slider);
+            assert!(
+                movement.nodes.iter().any(|node| *node != movement.nodes[start]),
+                "{rung}: {} moves nothing",
+                movement.slider
+            );
+            moved.push(movement.slider);
         }
     }
     for slider in live.sliders {
@@ -122,11 +126,11 @@ fn a_step_is_the_renderers_own_frame() {
     let mut turned = original.clone();
     change(&mut turned, &mut of_rung, values[3]);
     let frame = lapidary_render::frame(None, &turned, &of_rung).expect("a frame");
-    let moves: Vec<_> = manifest.rungs[rung].moves.iter().filter(|of| of.slider == "turn").collect();
+    let moves: Vec<_> = manifest.rungs[rung].moves.iter().filter(|movement| movement.slider == "turn").collect();
     assert!(!moves.is_empty());
-    for of in moves {
-        for place in &of.at {
-            assert_eq!(fields::value(&frame, place), of.nodes[3], "{place:?}");
+    for movement in moves {
+        for place in &movement.at {
+            assert_eq!(fields::value(&frame, place), movement.nodes[3], "{place:?}");
         }
     }
 }
@@ -175,10 +179,13 @@ fn a_timed_frame_is_the_ladders() {
         };
         let report: Value = serde_json::from_str(report).expect("JSON");
         assert_eq!(report["settings"][side], live.timed_side, "{}", live.scene);
-        for (rung, of) in &manifests[live.scene].rungs {
-            let document: Value = serde_json::from_slice(&stored(folder.path(), &of.timed)).expect("JSON");
+        for (rung, exported) in &manifests[live.scene].rungs {
+            let document: Value = serde_json::from_slice(&stored(folder.path(), &exported.timed)).expect("JSON");
             let size = json!([live.timed_side, live.timed_side]);
-            assert!(document["pictures"].as_array().expect("pictures").iter().all(|of| of["size"] == size), "{rung}");
+            assert!(
+                document["pictures"].as_array().expect("pictures").iter().all(|picture| picture["size"] == size),
+                "{rung}"
+            );
         }
     }
 }

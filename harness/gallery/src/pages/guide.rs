@@ -34,11 +34,11 @@ struct Values<'a> {
 }
 
 /// Returns the page of a guide.
-pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
-    let has_takes = of.name == CHOOSING;
-    let source = parts.doc(of.file);
+pub fn page(parts: &Parts<'_>, guide: &'static Guide) -> Page {
+    let has_takes = guide.name == CHOOSING;
+    let source = parts.doc(guide.file);
     let cut = if has_takes { without_section(source, FIGURES) } else { source.to_owned() };
-    let doc = markdown::page(&cut, &parts.places.of(of.file));
+    let doc = markdown::page(&cut, &parts.places.of(guide.file));
     let figures = Heading { level: 2, id: text::slug(FIGURES), text: FIGURES.to_owned(), words: String::new() };
     let values = Values {
         title: &doc.title,
@@ -51,25 +51,25 @@ pub fn page(parts: &Parts<'_>, of: &'static Guide) -> Page {
             .into_iter()
             .chain(doc.headings.iter().filter(|heading| heading.level == 2))
             .collect(),
-        ladders: of.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
+        ladders: guide.ladders.iter().filter_map(|name| parts.ladders.get(*name)).collect(),
         takes: if has_takes { take::groups(&parts.takes) } else { Vec::new() },
         live: parts.live.iter().collect(),
         sixty: parts.takes.iter().find(|take| take.choice.serves(choices::IN_A_SIXTIETH)).map(|take| take.id.as_str()),
     };
     let body = templates::render("guide.html", values);
-    let path = address("guides", of.name);
+    let path = address("guides", guide.name);
     let description = text::first_sentence(&doc.summary);
     let mut page =
-        Page::new("guide", path, of.title, description, body).with(&["diagram.css", "ladder.css", "takes.css"], &[]);
-    page.entries = vec![Entry::page(of.title, &page.path, description)];
-    page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, of.title, &page.path)));
+        Page::new("guide", path, guide.title, description, body).with(&["diagram.css", "ladder.css", "takes.css"], &[]);
+    page.entries = vec![Entry::page(guide.title, &page.path, description)];
+    page.entries.extend(doc.headings.iter().map(|heading| Entry::heading(heading, guide.title, &page.path)));
     page
 }
 
 /// Returns a text without its section under a heading of the second level; all of it if it has none.
 fn without_section(source: &str, heading: &str) -> String {
     let Some((before, section)) = source.split_once(&format!("\n## {heading}\n")) else { return source.to_owned() };
-    let after = section.find("\n## ").map_or("", |at| &section[at..]);
+    let after = section.find("\n## ").map_or("", |end| &section[end..]);
     [before, after].concat()
 }
 

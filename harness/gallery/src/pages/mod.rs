@@ -25,12 +25,12 @@ pub const MARK: &str = "M5 11 10 5H22L27 11 16 27ZM5 11H27M10 5 12 11 16 27 20 1
 /// Returns all pages, in the order in which one reads on.
 pub fn all(parts: &Parts<'_>) -> Vec<Page> {
     let mut pages = vec![start::page(parts)];
-    pages.extend(TECHNIQUES.iter().map(|of| technique::page(parts, of)));
+    pages.extend(TECHNIQUES.iter().map(|subject| technique::page(parts, subject)));
     pages.extend(parts.live.iter().map(|live| live_page(parts, live)));
-    pages.extend(GUIDES.iter().chain(&ENGINES).map(|of| guide::page(parts, of)));
+    pages.extend(GUIDES.iter().chain(&ENGINES).map(|subject| guide::page(parts, subject)));
     pages.push(pictures::page(parts));
-    pages.extend(cookbook::modules().iter().map(|of| module::page(parts, of)));
-    pages.extend(lapidary_wgsl::RECIPES.iter().map(|of| recipe::page(parts, of)));
+    pages.extend(cookbook::modules().iter().map(|subject| module::page(parts, subject)));
+    pages.extend(lapidary_wgsl::RECIPES.iter().map(|subject| recipe::page(parts, subject)));
     pages
 }
 
@@ -69,15 +69,27 @@ struct Group<'a> {
 
 fn groups<'a>(parts: &'a Parts<'_>, current: &str) -> Vec<Group<'a>> {
     let link = |folder: &str, name: &str, title: &'a str, code: bool| Link { path: address(folder, name), title, code };
-    let techniques = TECHNIQUES.iter().map(|of| link("techniques", of.name, of.title, false));
+    let techniques = TECHNIQUES.iter().map(|technique| link("techniques", technique.name, technique.title, false));
     let pictures = Link { path: "pictures.html".to_owned(), title: "All pictures", code: false };
     let list: [(&str, Vec<Link<'_>>, bool); 6] = [
         ("Techniques", techniques.chain([pictures]).collect(), false),
-        ("Live", parts.live.iter().map(|of| link("live", of.scene, of.title, false)).collect(), false),
-        ("Guides", GUIDES.iter().map(|of| link("guides", of.name, of.title, false)).collect(), false),
-        ("Engines and languages", ENGINES.iter().map(|of| link("guides", of.name, of.title, false)).collect(), true),
-        ("Modules", cookbook::modules().iter().map(|of| link("modules", of.name, of.name, true)).collect(), true),
-        ("Recipes", lapidary_wgsl::RECIPES.iter().map(|of| link("recipes", of.name, of.name, true)).collect(), true),
+        ("Live", parts.live.iter().map(|live| link("live", live.scene, live.title, false)).collect(), false),
+        ("Guides", GUIDES.iter().map(|guide| link("guides", guide.name, guide.title, false)).collect(), false),
+        (
+            "Engines and languages",
+            ENGINES.iter().map(|guide| link("guides", guide.name, guide.title, false)).collect(),
+            true,
+        ),
+        (
+            "Modules",
+            cookbook::modules().iter().map(|module| link("modules", module.name, module.name, true)).collect(),
+            true,
+        ),
+        (
+            "Recipes",
+            lapidary_wgsl::RECIPES.iter().map(|recipe| link("recipes", recipe.name, recipe.name, true)).collect(),
+            true,
+        ),
     ];
     let group = |(title, entries, folded): (&'a str, Vec<Link<'a>>, bool)| Group {
         title,
@@ -109,16 +121,16 @@ struct Values<'a> {
 }
 
 /// Returns the whole HTML of the page at that place.
-pub fn html(parts: &Parts<'_>, pages: &[Page], at: usize) -> String {
-    let page = &pages[at];
-    let neighbour = |at: usize| pages.get(at).map(|page| Neighbour { path: &page.path, title: &page.title });
+pub fn html(parts: &Parts<'_>, pages: &[Page], place: usize) -> String {
+    let page = &pages[place];
+    let neighbour = |index: usize| pages.get(index).map(|page| Neighbour { path: &page.path, title: &page.title });
     let values = Values {
         root: root(&page.path),
         mark: MARK,
         page,
         groups: groups(parts, &page.path),
-        previous: at.checked_sub(1).and_then(neighbour),
-        next: neighbour(at + 1),
+        previous: place.checked_sub(1).and_then(neighbour),
+        next: neighbour(place + 1),
         adapter: parts.adapter,
         licence: LICENCE,
     };

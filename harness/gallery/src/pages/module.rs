@@ -96,7 +96,7 @@ pub fn page(parts: &Parts<'_>, module: &'static Module) -> Page {
         diagrams: parts.diagrams.iter().filter(|diagram| diagram.module == module.name).collect(),
         editor: parts.editors.get(module.name),
         rustdoc: parts.rustdoc.then(|| ["../rustdoc/lapidary_", module.name, "/index.html"].concat()),
-        techniques: techniques_with(|of| of.modules.contains(&module.name)),
+        techniques: techniques_with(|technique| technique.modules.contains(&module.name)),
     };
     let mut page =
         Page::new("module", path, module.name, &text::plain(&doc.summary), templates::render("module.html", values))
@@ -129,9 +129,9 @@ fn signature(source: &str, function: &FunctionDoc) -> Vec<String> {
     }
     let mut all = vec![[head, "("].concat()];
     let last = pieces.len() - 1;
-    all.extend(pieces.iter().enumerate().map(|(at, piece)| {
+    all.extend(pieces.iter().enumerate().map(|(index, piece)| {
         let piece = piece.trim();
-        if at == last { [piece, ")"].concat() } else { piece.to_owned() }
+        if index == last { [piece, ")"].concat() } else { piece.to_owned() }
     }));
     if !result.trim().is_empty() {
         all.push(result.trim().to_owned());

@@ -54,6 +54,6 @@ pub fn address(folder: &str, name: &str) -> String {
 
 /// Returns the techniques that something belongs to: their pages, from a page in another folder, and their titles.
 pub fn techniques_with(has: impl Fn(&Technique) -> bool) -> Vec<(String, &'static str)> {
-    let of = TECHNIQUES.iter().filter(|of| has(of));
-    of.map(|of| (["../", &address("techniques", of.name)].concat(), of.title)).collect()
+    let techniques = TECHNIQUES.iter().filter(|technique| has(technique));
+    techniques.map(|technique| (["../", &address("techniques", technique.name)].concat(), technique.title)).collect()
 }

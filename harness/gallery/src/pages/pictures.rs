@@ -14,10 +14,10 @@ struct Group<'a> {
 
 /// Returns the page.
 pub fn page(parts: &Parts<'_>) -> Page {
-    let group = |of: &'static crate::techniques::Technique| Group {
-        name: of.name,
-        title: of.title,
-        pictures: parts.pictures.iter().filter(|picture| picture.folder == of.pictures).collect(),
+    let group = |technique: &'static crate::techniques::Technique| Group {
+        name: technique.name,
+        title: technique.title,
+        pictures: parts.pictures.iter().filter(|picture| picture.folder == technique.pictures).collect(),
     };
     let groups: Vec<Group<'_>> = TECHNIQUES.iter().map(group).collect();
     #[derive(Serialize)]

@@ -56,7 +56,7 @@ pub fn page(parts: &Parts<'_>, recipe: &'static Recipe) -> Page {
         wgsl: highlight::pieces(recipe.source, Language::Wgsl),
         overrides: overrides.collect(),
         host: Markup([host.lead.0, host.introduction.0, host.rest.0].concat()),
-        techniques: techniques_with(|of| of.recipes.contains(&recipe.name)),
+        techniques: techniques_with(|technique| technique.recipes.contains(&recipe.name)),
     };
     let mut page = Page::new("recipe", path, recipe.name, purpose, templates::render("recipe.html", values));
     page.entries = vec![Entry::page(recipe.name, &page.path, purpose)];

@@ -23,14 +23,14 @@ struct Card<'a> {
 
 /// Returns the page.
 pub fn page(parts: &Parts<'_>) -> Page {
-    let card = |of: &'static Technique| Card {
-        name: of.name,
-        title: of.title,
-        summary: of.summary,
-        choice: default(parts, of),
-        heading: of.ladders.first().and_then(|name| Kind::named(name)).map(choices::heading),
-        live: parts.live_scene(of),
-        picture: parts.picture(of.hero),
+    let card = |technique: &'static Technique| Card {
+        name: technique.name,
+        title: technique.title,
+        summary: technique.summary,
+        choice: default(parts, technique),
+        heading: technique.ladders.first().and_then(|name| Kind::named(name)).map(choices::heading),
+        live: parts.live_scene(technique),
+        picture: parts.picture(technique.hero),
     };
     #[derive(Serialize)]
     struct Values<'a> {
@@ -56,7 +56,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
 }
 
 /// Returns the rung that a technique has without a choice, on its first ladder.
-fn default<'a>(parts: &'a Parts<'_>, of: &Technique) -> Option<&'a Choice> {
-    let of_ladder = |take: &&Take| of.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
+fn default<'a>(parts: &'a Parts<'_>, technique: &Technique) -> Option<&'a Choice> {
+    let of_ladder = |take: &&Take| technique.ladders.first() == Some(&take.choice.ladder) && take.choice.is_default;
     parts.takes.iter().find(of_ladder).map(|take| &take.choice)
 }

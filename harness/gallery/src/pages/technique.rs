@@ -70,58 +70,59 @@ struct Guide {
 const MOST_DIAGRAMS: usize = 4;
 
 /// Returns the page of a technique.
-pub fn page(parts: &Parts<'_>, of: &'static Technique) -> Page {
-    let path = address("techniques", of.name);
-    let file = ["docs/", of.doc, ".md"].concat();
+pub fn page(parts: &Parts<'_>, technique: &'static Technique) -> Page {
+    let path = address("techniques", technique.name);
+    let file = ["docs/", technique.doc, ".md"].concat();
     // The doc page is a module's own, or a guide.
-    let kind = if cookbook::module(of.doc).is_some() { "modules" } else { "guides" };
-    let whole = ["../", &address(kind, of.doc)].concat();
+    let kind = if cookbook::module(technique.doc).is_some() { "modules" } else { "guides" };
+    let whole = ["../", &address(kind, technique.doc)].concat();
     let doc = markdown::page(parts.doc(&file), &parts.places.of_part(&file, &whole));
     let named = |name: &'static str| Named { name, purpose: super::super::text::prose(&purpose(name)) };
     let guide = |name: &str| {
         let guide = super::super::guides::GUIDES.iter().find(|guide| guide.name == name)?;
         Some(Guide { path: ["../", &address("guides", guide.name)].concat(), title: guide.title })
     };
-    let shown = |picture: &&Shown| picture.folder == of.pictures && picture.name != of.hero;
-    let pair = of.modules.iter().find_map(|name| {
+    let shown = |picture: &&Shown| picture.folder == technique.pictures && picture.name != technique.hero;
+    let pair = technique.modules.iter().find_map(|name| {
         let module = cookbook::module(name)?;
         let of_crate = parts.mirrors.get(name).map_or(&[][..], Vec::as_slice);
-        Some((module, mirror::pair(module, of.function, of_crate)?))
+        Some((module, mirror::pair(module, technique.function, of_crate)?))
     });
     let values = Values {
-        technique: of.name,
-        title: of.title,
-        summary: of.summary,
-        hero: parts.picture(of.hero),
-        scene: of.live,
-        live: parts.live_scene(of),
+        technique: technique.name,
+        title: technique.title,
+        summary: technique.summary,
+        hero: parts.picture(technique.hero),
+        scene: technique.live,
+        live: parts.live_scene(technique),
         lead: doc.lead,
         equation: doc.equation,
         introduction: doc.introduction,
         pair: pair.as_ref().map(|(_, pair)| pair.coloured()),
         of_module: pair.as_ref().map_or("", |(module, _)| module.name),
-        hard: of.modules.iter().copied().filter(|name| has_hard_cases(name)).collect(),
-        solves: of.solves,
+        hard: technique.modules.iter().copied().filter(|name| has_hard_cases(name)).collect(),
+        solves: technique.solves,
         whole,
-        takes: take::groups(parts.takes.iter().filter(|take| of.ladders.contains(&take.choice.ladder))),
-        beside: of.beside.as_ref().and_then(|(name, when)| {
+        takes: take::groups(parts.takes.iter().filter(|take| technique.ladders.contains(&take.choice.ladder))),
+        beside: technique.beside.as_ref().and_then(|(name, when)| {
             let other = TECHNIQUES.iter().find(|other| other.name == *name)?;
             Some(Beside { name, title: other.title, when })
         }),
-        diagrams: diagrams(parts, of),
+        diagrams: diagrams(parts, technique),
         // The first; the guides have the others.
-        ladders: of.ladders.iter().take(1).filter_map(|name| parts.ladders.get(*name)).collect(),
+        ladders: technique.ladders.iter().take(1).filter_map(|name| parts.ladders.get(*name)).collect(),
         pictures: parts.pictures.iter().filter(shown).collect(),
-        guides: std::iter::once("choosing").chain(of.guides.iter().copied()).filter_map(guide).collect(),
-        modules: of.modules.iter().copied().map(named).collect(),
-        recipes: of.recipes.iter().copied().map(named).collect(),
+        guides: std::iter::once("choosing").chain(technique.guides.iter().copied()).filter_map(guide).collect(),
+        modules: technique.modules.iter().copied().map(named).collect(),
+        recipes: technique.recipes.iter().copied().map(named).collect(),
     };
-    let mut page = Page::new("technique", path, of.title, of.summary, templates::render("technique.html", values))
-        .with(&["diagram.css", "ladder.css", "takes.css"], &[]);
-    page.entries = vec![Entry::page(of.title, &page.path, of.summary)];
-    for (at, kind) in of.ladders.iter().filter_map(|name| Kind::named(name)).enumerate() {
+    let mut page =
+        Page::new("technique", path, technique.title, technique.summary, templates::render("technique.html", values))
+            .with(&["diagram.css", "ladder.css", "takes.css"], &[]);
+    page.entries = vec![Entry::page(technique.title, &page.path, technique.summary)];
+    for (index, kind) in technique.ladders.iter().filter_map(|name| Kind::named(name)).enumerate() {
         // The first is on this page, the others on the guide that shows all.
-        let guide = super::super::guides::GUIDES.iter().find(|guide| at > 0 && guide.ladders.contains(&kind.name));
+        let guide = super::super::guides::GUIDES.iter().find(|guide| index > 0 && guide.ladders.contains(&kind.name));
         let on = guide.map_or_else(|| page.path.clone(), |guide| address("guides", guide.name));
         let path = [&on, "#ladder-", kind.name].concat();
         page.entries.extend(kind.steps().iter().map(|step| {
@@ -147,7 +148,7 @@ fn has_hard_cases(name: &str) -> bool {
 }
 
 /// Returns the diagrams of the modules that are most its own.
-fn diagrams<'a>(parts: &'a Parts<'_>, of: &Technique) -> Vec<&'a DrawnDiagram> {
+fn diagrams<'a>(parts: &'a Parts<'_>, technique: &Technique) -> Vec<&'a DrawnDiagram> {
     let of_module = |name: &&str| parts.diagrams.iter().find(|diagram| diagram.module == *name);
-    of.modules.iter().filter_map(of_module).take(MOST_DIAGRAMS).collect()
+    technique.modules.iter().filter_map(of_module).take(MOST_DIAGRAMS).collect()
 }

@@ -66,16 +66,16 @@ enum Content {
     Ramp,
 }
 
-fn sample(content: Content, at: Vec2<usize>, part: usize) -> f32 {
+fn sample(content: Content, pixel: Vec2<usize>, part: usize) -> f32 {
     match content {
-        Content::Steps => ((at.0 * (part + 1) + at.1) % 29 / 3) as f32 * 0.375,
+        Content::Steps => ((pixel.0 * (part + 1) + pixel.1) % 29 / 3) as f32 * 0.375,
         Content::Noise => {
-            let bits = mix((at.1 << 20 | at.0 << 2 | part) as u64);
+            let bits = mix((pixel.1 << 20 | pixel.0 << 2 | part) as u64);
             let value = (bits as u32 as f32 / u32::MAX as f32 * 20.0 - 8.0).exp2();
             if bits >> 60 == 0 { -value } else { value }
         }
         Content::Ramp => {
-            let place = part << 13 | (at.1 & 31) << 8 | at.0;
+            let place = part << 13 | (pixel.1 & 31) << 8 | pixel.0;
             f16::from_bits(place as u16).to_f32()
         }
     }
@@ -95,15 +95,16 @@ fn write_open_exr(folder: &Path, size: (usize, usize), content: Content) {
         let (width, height) = size;
         let path =
             |kind| folder.join(format!("{compression}_{kind}_{width}x{height}_{content:?}.exr").replace(' ', "_"));
-        let part = move |at, part| sample(content, at, part);
-        let floats = SpecificChannels::rgb(move |at: Vec2<usize>| (part(at, 0), part(at, 1), part(at, 2)));
+        let part = move |pixel, part| sample(content, pixel, part);
+        let floats = SpecificChannels::rgb(move |pixel: Vec2<usize>| (part(pixel, 0), part(pixel, 1), part(pixel, 2)));
         write(&path("float"), size, compression, floats);
-        let half = move |at, of| f16::from_f32(part(at, of));
-        let halves = SpecificChannels::rgb(move |at: Vec2<usize>| (half(at, 0), half(at, 1), half(at, 2)));
+        let half = move |pixel, channel| f16::from_f32(part(pixel, channel));
+        let halves = SpecificChannels::rgb(move |pixel: Vec2<usize>| (half(pixel, 0), half(pixel, 1), half(pixel, 2)));
         write(&path("half"), size, compression, halves);
-        let whole = move |at, of| part(at, of).abs() as u32;
-        let mixed =
-            SpecificChannels::rgba(move |at: Vec2<usize>| (whole(at, 0), half(at, 1), part(at, 2), half(at, 0)));
+        let whole = move |pixel, channel| part(pixel, channel).abs() as u32;
+        let mixed = SpecificChannels::rgba(move |pixel: Vec2<usize>| {
+            (whole(pixel, 0), half(pixel, 1), part(pixel, 2), half(pixel, 0))
+        });
         write(&path("mixed"), size, compression, mixed);
     }
 }
@@ -111,7 +112,8 @@ fn write_open_exr(folder: &Path, size: (usize, usize), content: Content) {
 /// Writes a picture as Radiance, by runs and as it is, as its encoder chooses by the width, with and without exposure.
 fn write_radiance(folder: &Path, (width, height): (usize, usize), content: Content) {
     let places = (0..width * height).map(|place| Vec2(place % width, place / width));
-    let pixels: Vec<_> = places.map(|at| image::Rgb([0, 1, 2].map(|part| sample(content, at, part).abs()))).collect();
+    let pixels: Vec<_> =
+        places.map(|pixel| image::Rgb([0, 1, 2].map(|part| sample(content, pixel, part).abs()))).collect();
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes).encode(&pixels, width, height).expect("a file is written");
     let name = format!("{width}x{height}_{content:?}");

@@ -67,8 +67,8 @@ fn differing(one: &[u8], other: &[u8]) -> f64 {
 }
 
 /// The names in an object of the page's manifest.
-fn names(page: &mut Page, of: &str) -> Vec<String> {
-    let names = page.evaluate(&format!("Object.keys(gallery.live.manifest.{of})")).expect("a manifest");
+fn names(page: &mut Page, key: &str) -> Vec<String> {
+    let names = page.evaluate(&format!("Object.keys(gallery.live.manifest.{key})")).expect("a manifest");
     names.as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect()
 }
 

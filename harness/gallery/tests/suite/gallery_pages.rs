@@ -48,7 +48,7 @@ fn links<'a>(site: &'a Site) -> Vec<Link<'a>> {
             let Piece::Start(name, attributes) = piece else { continue };
             let found = ADDRESSES.iter().filter_map(|key| attributes.get(*key).cloned());
             let set = attributes.get("srcset").into_iter().flat_map(|set| set.split(','));
-            let set = set.map(|of| of.split_whitespace().next().unwrap_or_default().to_owned());
+            let set = set.map(|candidate| candidate.split_whitespace().next().unwrap_or_default().to_owned());
             links.extend(found.chain(set).map(|address| Link { from, address, followed: name == "a" }));
         }
     }
@@ -181,13 +181,15 @@ fn weight(site: &Site, path: &str, page: &SitePage) -> [u64; 2] {
     let (mut all, mut first) = (page.bytes, page.bytes);
     for piece in &page.pieces {
         let Piece::Start(name, attributes) = piece else { continue };
-        let of = |key: &str| attributes.get(key).map(String::as_str);
-        let waits = match (name.as_str(), of("rel")) {
-            ("script", _) => of("defer").is_none() && of("async").is_none() && of("type") != Some("module"),
+        let value_of = |key: &str| attributes.get(key).map(String::as_str);
+        let waits = match (name.as_str(), value_of("rel")) {
+            ("script", _) => {
+                value_of("defer").is_none() && value_of("async").is_none() && value_of("type") != Some("module")
+            }
             ("link", Some("stylesheet" | "preload")) => true,
             _ => continue,
         };
-        let address = if name == "script" { of("src") } else { of("href") };
+        let address = if name == "script" { value_of("src") } else { value_of("href") };
         let Some(file) = address.and_then(|address| resolved(path, address)) else { continue };
         let bytes = site.bytes(&file);
         all += bytes;
@@ -232,10 +234,10 @@ fn pages_say_what_they_are() {
     for (path, page) in &site().pages {
         let mut count: BTreeMap<&str, usize> = BTreeMap::new();
         let mut title = None;
-        for (at, piece) in page.pieces.iter().enumerate() {
+        for (index, piece) in page.pieces.iter().enumerate() {
             let Piece::Start(name, attributes) = piece else { continue };
             *count.entry(name).or_default() += 1;
-            match (name.as_str(), page.pieces.get(at + 1)) {
+            match (name.as_str(), page.pieces.get(index + 1)) {
                 ("title", Some(Piece::Text(text))) => title = title.or_else(|| Some(text.clone())),
                 ("html", _) => assert_eq!(attributes.get("lang").map(String::as_str), Some("en"), "{path}"),
                 ("img", _) => {
@@ -265,24 +267,24 @@ struct Listing {
 /// Returns the listings of a page.
 fn listings(site: &Site, page: &SitePage) -> Vec<Listing> {
     let is_source = |piece: &Piece| piece.has_class("source");
-    let starts: Vec<usize> = (0..page.pieces.len()).filter(|at| is_source(&page.pieces[*at])).collect();
+    let starts: Vec<usize> = (0..page.pieces.len()).filter(|index| is_source(&page.pieces[*index])).collect();
     let mut found = Vec::new();
     for (nth, start) in starts.iter().enumerate() {
         let Piece::Start(_, attributes) = &page.pieces[*start] else { unreachable!("a start") };
         // Listings do not stand in one another.
         let within = &page.pieces[*start..starts.get(nth + 1).copied().unwrap_or(page.pieces.len())];
-        let at = |wanted: &str| {
+        let index_of = |wanted: &str| {
             let is_it =
                 |piece: &Piece| piece.has_class(wanted) || matches!(piece, Piece::Start(name, _) if name == wanted);
             within.iter().position(is_it)
         };
-        let file = at("file").map(|at| text_until(&within[at..], "span")).unwrap_or_default();
+        let file = index_of("file").map(|place| text_until(&within[place..], "span")).unwrap_or_default();
         if !page.pieces[*start].has_class("copyable") || !file.ends_with(".wgsl") {
             continue;
         }
         let text = match attributes.get("data-source") {
             Some(name) => source(site, name),
-            None => text_until(&within[at("pre").unwrap_or_else(|| panic!("{file}: no text"))..], "pre"),
+            None => text_until(&within[index_of("pre").unwrap_or_else(|| panic!("{file}: no text"))..], "pre"),
         };
         found.push(Listing { file, text });
     }

@@ -93,8 +93,8 @@ fn a_planted_error_does_not_hold_in_the_page() {
     for (function, from, to) in PLANTED {
         let name = ALWAYS.iter().find(|name| function.starts_with(*name)).expect("its module");
         let source = module(name).source;
-        let at = source.find(&format!("fn {function}(")).expect("the function");
-        let (before, body) = source.split_at(at);
+        let start = source.find(&format!("fn {function}(")).expect("the function");
+        let (before, body) = source.split_at(start);
         let (body, after) = body.split_at(body.find("\n}").expect("its end"));
         assert!(body.contains(from), "{function} has no `{from}`");
         let changed = [before, &body.replacen(from, to, 1), after].concat();

@@ -24,7 +24,7 @@ pub fn text(report: &Report) -> String {
         "of WGSL at"
     );
     for row in &report.rows {
-        let spelt = |at: &[f32]| at.iter().map(|float| format!("{float:e}")).collect::<Vec<_>>().join(", ");
+        let spelt = |floats: &[f32]| floats.iter().map(|float| format!("{float:e}")).collect::<Vec<_>>().join(", ");
         let share = row.of_wgsl.map_or("-".to_owned(), |share| format!("{share:.4}"));
         let ulp = if row.max_ulp < 1e5 { format!("{:.3}", row.max_ulp) } else { format!("{:.2e}", row.max_ulp) };
         let _ = writeln!(

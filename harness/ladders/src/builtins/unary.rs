@@ -23,7 +23,7 @@ enum Truth {
 
 impl Builtin {
     fn is(&self, function: Float) -> bool {
-        matches!(self.truth, Truth::Stated(own) if own == function)
+        matches!(self.truth, Truth::Stated(stated) if stated == function)
     }
 }
 

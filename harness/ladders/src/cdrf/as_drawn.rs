@@ -40,7 +40,7 @@ pub(super) fn measure(
         SCENES.into_iter().map(|name| Ok((name, Scene::named(name)?))).collect::<Result<_, CostError>>()?;
     let (mut rows, mut timed) = (Vec::new(), Vec::new());
     for (name, scene) in &scenes {
-        let walked = WalkedReference::of_scene(name).map(|of| of.picture(gpu)).transpose()?;
+        let walked = WalkedReference::of_scene(name).map(|reference| reference.picture(gpu)).transpose()?;
         let truth = walked.map_or_else(Vec::new, |picture| picture.linear);
         for reflectance in REFLECTANCES {
             let settings = Settings { half_space: true, ..settings(reflectance, true) };

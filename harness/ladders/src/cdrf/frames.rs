@@ -153,7 +153,7 @@ pub(super) fn measure(
     let mut rows = Vec::new();
     let mut timed: Vec<Timed<'_>> = Vec::new();
     for (&reflectance, errors) in options.rungs.iter().zip(errors) {
-        let mut own: Vec<(Part, Option<CurvatureSource>, usize)> = Vec::new();
+        let mut known: Vec<(Part, Option<CurvatureSource>, usize)> = Vec::new();
         for ((part, source, settings), view) in frames(reflectance, options.frame).into_iter().zip(VIEWS) {
             let counts = shader::counts(scenes.of(part), &settings, reflectance)?;
             let row = Row {
@@ -161,7 +161,7 @@ pub(super) fn measure(
                 instructions: vec![counts.vertex_instructions, counts.fragment_instructions],
                 ..Row::new(reflectance.name(), view, "", None, "")
             };
-            let same = own.iter().find(|other| (other.0, other.1) == (part, source)).map(|other| other.2);
+            let same = known.iter().find(|other| (other.0, other.1) == (part, source)).map(|other| other.2);
             let index = same.unwrap_or_else(|| {
                 timed.push(Timed {
                     displayed: part == Part::Whole,
@@ -171,7 +171,7 @@ pub(super) fn measure(
                 });
                 timed.len() - 1
             });
-            own.push((part, source, index));
+            known.push((part, source, index));
             rows.push((row, errors, index));
         }
     }

@@ -108,9 +108,13 @@ mod tests {
         for row in &report.rows {
             println!("{} by {}: {:.3}", row.view, row.rung, row.value.expect("measured"));
         }
-        let of = |rung: &str, shadows| report.value(rung, &view("skin_bunny", shadows), "walks").expect("measured");
-        assert!(of("lambert", true) < 0.8 * of("lambert", false));
-        assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
+        let error_of =
+            |rung: &str, shadows| report.value(rung, &view("skin_bunny", shadows), "walks").expect("measured");
+        assert!(error_of("lambert", true) < 0.8 * error_of("lambert", false));
+        assert!(
+            error_of("accurate", true) < 0.8 * error_of("accurate", false)
+                && error_of("accurate", true) < error_of("lambert", true)
+        );
     }
 
     /// The numbers in docs/cdrf_shading.md: the error on the bunny if a mask were applied to the
@@ -142,11 +146,12 @@ mod tests {
         };
         let everywhere = masked(|visibility| visibility.unwrap_or(0.0));
         let facing = masked(|visibility| visibility.unwrap_or(1.0));
-        let own = exposed_distance(&halved(&draw(Reflectance::Accurate, true)).linear, &truth);
+        let recipe = exposed_distance(&halved(&draw(Reflectance::Accurate, true)).linear, &truth);
         println!(
-            "skin_bunny: masked everywhere {everywhere:.3}, where it faces the light {facing:.3}, as the recipe does {own:.3}"
+            "skin_bunny: masked everywhere {everywhere:.3}, where it faces the light {facing:.3}, as the recipe does \
+             {recipe:.3}"
         );
-        assert!(own < facing && facing < everywhere, "{own} {facing} {everywhere}");
+        assert!(recipe < facing && facing < everywhere, "{recipe} {facing} {everywhere}");
         // The page rounds to two digits. Pixels at shadow edges differ between drivers.
         for (found, recorded) in [(everywhere, 0.311), (facing, 0.286)] {
             let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };

@@ -45,7 +45,7 @@ mod tests {
         let scene = Scene::named("skin").expect("built in");
         let options = options();
         let counted = |curvature, without| -> Vec<u32> {
-            let of = |&reflectance: &Reflectance| {
+            let instructions_of = |&reflectance: &Reflectance| {
                 let rung = Rung::Diffuse(reflectance);
                 let settings = Settings {
                     rung,
@@ -55,7 +55,7 @@ mod tests {
                 };
                 counts(&scene, &settings, reflectance).expect("counted").fragment_instructions
             };
-            options.rungs.iter().map(of).collect()
+            options.rungs.iter().map(instructions_of).collect()
         };
         let dark = Effects::of(&[Effect::Environment]);
         let [lit, vertex, whole] =
@@ -67,7 +67,12 @@ mod tests {
             // The light that reaches the texture is counted with the texture's recipe.
             assert_eq!(whole[index] > lit[index], *name != "blur", "{name}: {lit:?} {whole:?}");
         }
-        let of = |name: &str| lit[RUNGS.iter().position(|rung| *rung == name).expect(name)];
-        assert!(of("blur") < of("lambert") && of("lambert") < of("cheap") && of("cheap") < of("accurate"), "{lit:?}");
+        let count_of = |name: &str| lit[RUNGS.iter().position(|rung| *rung == name).expect(name)];
+        assert!(
+            count_of("blur") < count_of("lambert")
+                && count_of("lambert") < count_of("cheap")
+                && count_of("cheap") < count_of("accurate"),
+            "{lit:?}"
+        );
     }
 }

@@ -20,8 +20,8 @@ pub fn view(albedo: f64, radius: f64) -> String {
 pub fn profiles(report: &Report) -> Vec<Profile> {
     let views = distinct(report.rows.iter().filter(|row| row.rung == WALKS).map(|row| row.view.as_str()));
     let values = |view: &str, measure: &str| -> Option<[f64; BINS]> {
-        let own = report.rows.iter().filter(|row| row.rung == WALKS && row.view == view);
-        let found: Vec<&Row> = own.filter(|row| row.measure.starts_with(measure)).collect();
+        let rows = report.rows.iter().filter(|row| row.rung == WALKS && row.view == view);
+        let found: Vec<&Row> = rows.filter(|row| row.measure.starts_with(measure)).collect();
         let value = |bin: usize| found.iter().find(|row| row.measure == format!("{measure} {bin}"))?.value;
         let values: Option<Vec<f64>> = (0..BINS).map(value).collect();
         values?.try_into().ok()

@@ -166,11 +166,11 @@ fn nearer(report: &Report, rung: &str) -> Option<f64> {
 fn goals(report: &Report) -> Table {
     let mut goals = Vec::new();
     for (lit, whole) in VIEWS[..2].iter().zip(&VIEWS[2..]) {
-        let of = |view: &str, slow: &str, fast: &str| ratio(report, slow, fast, view);
+        let speedup = |view: &str, slow: &str, fast: &str| ratio(report, slow, fast, view);
         // The fastest rung without a table that is close enough; the other goals apply to it too.
         let near = |rung: &&'static str| {
             let times = nearer(report, rung).filter(|times| *times >= 100.0)?;
-            Some((*rung, times, of(lit, PAPER, rung)?))
+            Some((*rung, times, speedup(lit, PAPER, rung)?))
         };
         let Some((best, times, faster)) = ANALYTIC.iter().filter_map(near).max_by(|a, b| a.2.total_cmp(&b.2)) else {
             continue;
@@ -183,12 +183,12 @@ fn goals(report: &Report) -> Table {
             format!("`{best}`: {faster:.2} times as fast, {times:.0} times as near"),
             faster > 1.0,
         ));
-        goals.extend(of(whole, best, LAMBERT).map(|over| {
+        goals.extend(speedup(whole, best, LAMBERT).map(|over| {
             let goal = format!("its whole frame within 25 % of Lambert's; {with}");
             Goal::new(goal, format!("`{best}`: {}", beyond(Some(over))), over <= 1.25)
         }));
         for (view, what) in [(lit, "its lit part"), (whole, "its whole frame")] {
-            goals.extend(of(view, BLUR, best).map(|faster| {
+            goals.extend(speedup(view, BLUR, best).map(|faster| {
                 let goal = format!("{what} at least 10 times as fast as by the texture's blur; {with}");
                 Goal::new(goal, format!("`{best}`: {faster:.1} times"), faster >= 10.0)
             }));
@@ -207,7 +207,7 @@ fn paper(report: &Report) -> Table {
         }),
     ];
     let views = || std::iter::once(None).chain(VIEWS.map(Some));
-    let lines: Vec<_> = figures.into_iter().flat_map(|of| views().map(move |view| (of, view))).collect();
+    let lines: Vec<_> = figures.into_iter().flat_map(|quantity| views().map(move |view| (quantity, view))).collect();
     let mut table = Table::of("cdrf_paper", "The paper's figures: PlayStation 3, the GPU's part alone", lines).column(
         "",
         |((what, ..), view)| match view {
@@ -219,8 +219,8 @@ fn paper(report: &Report) -> Table {
         },
     );
     for rung in [PAPER, "cheap", "accurate"] {
-        table = table.column(format!("`{rung}`"), |((_, papers, of), view)| match view {
-            Some(view) => of(report, rung, view),
+        table = table.column(format!("`{rung}`"), |((_, papers, value_of), view)| match view {
+            Some(view) => value_of(report, rung, view),
             None => if rung == PAPER { papers } else { "-" }.to_owned(),
         });
     }
@@ -251,13 +251,13 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
             Some(Dot { marker, compared: rung != SPHERICAL, ..dot })
         };
         let dots: Vec<Dot<'_>> = RUNGS.into_iter().filter_map(dot).collect();
-        let mut own = plot::ladder(&dots, &groups, (front, width), 1.0);
-        for series in own[1..].iter_mut().filter(|_| marker == Marker::Ring) {
+        let mut added = plot::ladder(&dots, &groups, (front, width), 1.0);
+        for series in added[1..].iter_mut().filter(|_| marker == Marker::Ring) {
             // One label for both points of a rung, and one name in the legend.
             series.name.clear();
             series.points.iter_mut().for_each(|point| point.label.clear());
         }
-        series.append(&mut own);
+        series.append(&mut added);
     }
     for point in series.iter_mut().flat_map(|series| &mut series.points) {
         point.front = true;

@@ -12,7 +12,7 @@ fn add(report: &mut Report, rung: &str, ms: f64, error: Option<f64>, curved: boo
         let ms = if view.starts_with("lit") { lit } else { lit + 10.0 };
         let errors = error.map(|error| [error, 0.1 * error, 0.02, 0.03 + error]);
         for (place, measure) in MEASURES.into_iter().enumerate() {
-            report.rows.push(Row::new(rung, view, measure, errors.map(|of| of[place]), "").timed(Some(ms)));
+            report.rows.push(Row::new(rung, view, measure, errors.map(|values| values[place]), "").timed(Some(ms)));
         }
         let row = Row { bytes: Some(262_144), instructions: vec![10, 20], ..Row::new(rung, view, "", None, "") };
         report.add_time(row, Some(&Timing { ms, median_ms: ms, share: 1.0, encode_us: 1.0 }));

@@ -149,9 +149,9 @@ mod tests {
 
     #[test]
     fn the_least_is_found_wherever_it_is() {
-        for at in [0.9f32, 0.1, 0.0031, 0.0009] {
-            let (found, error) = least(|strength| Ok(f64::from((strength / at).ln().abs()))).expect("no error");
-            assert!((found / at - 1.0).abs() < 0.1 && error < 0.1, "{at}: {found} {error}");
+        for lowest in [0.9f32, 0.1, 0.0031, 0.0009] {
+            let (found, error) = least(|strength| Ok(f64::from((strength / lowest).ln().abs()))).expect("no error");
+            assert!((found / lowest - 1.0).abs() < 0.1 && error < 0.1, "{lowest}: {found} {error}");
         }
         assert_eq!(least(|strength| Ok(f64::from(strength))).expect("no error"), (0.0, 0.0));
     }

@@ -68,8 +68,8 @@ pub fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
         picture.linear.iter().flat_map(|pixel| &pixel[..3]).map(|value| f64::from(*value)).collect()
     };
     let power: f64 = channels(reference).iter().map(|value| value * value).sum();
-    let apart = channels(now).iter().zip(&channels(next)).map(|(now, next)| (now - next).powi(2)).sum::<f64>();
-    (apart / power).sqrt()
+    let difference = channels(now).iter().zip(&channels(next)).map(|(now, next)| (now - next).powi(2)).sum::<f64>();
+    (difference / power).sqrt()
 }
 
 /// The rung whose steadiness is measured with more samples: it shows the stone.

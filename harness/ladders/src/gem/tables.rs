@@ -162,7 +162,7 @@ fn concave(gem: &Gem<'_>) -> Table {
 
 fn steadiness(gem: &Gem<'_>) -> Table {
     let report = gem.report;
-    let [flip, apart, changes] = STEADINESS;
+    let [flip, rmse, changes] = STEADINESS;
     let with = |row: &&Row| row.rung == STEADY && row.view == MEAN;
     let ways: Vec<&str> = report.rows.iter().filter(with).filter_map(|row| row.measure.strip_prefix(changes)).collect();
     let value =
@@ -173,8 +173,8 @@ fn steadiness(gem: &Gem<'_>) -> Table {
         .column("rung", |_| STEADY.to_owned())
         .column("samples a pixel", |way| (*way).to_owned())
         .column("FLIP", |way| value(MEAN, flip, way))
-        .column("RMSE to 64 samples", |way| value(MEAN, apart, way))
-        .column("the same, `brilliant`", |way| value("brilliant", apart, way))
+        .column("RMSE to 64 samples", |way| value(MEAN, rmse, way))
+        .column("the same, `brilliant`", |way| value("brilliant", rmse, way))
         .column("change at 0.05°", |way| value(MEAN, changes, way))
         .column("change, `brilliant`", |way| value("brilliant", changes, way))
         .column("ms", |way| figure(ms(way), 1))
@@ -279,7 +279,7 @@ fn colours(report: &Report) -> Table {
     let views = |rung: &str| -> Vec<&str> {
         tracked.iter().filter(|(other, _)| *other == rung).map(|(_, view)| *view).collect()
     };
-    let of = |rung: &str, measure: &str, show: &dyn Fn(f64) -> String| {
+    let spread = |rung: &str, measure: &str, show: &dyn Fn(f64) -> String| {
         range(views(rung).into_iter().filter_map(|view| report.value(rung, view, measure)), show)
     };
     let digits = |count: usize| move |value: f64| format!("{value:.count$}");
@@ -287,12 +287,12 @@ fn colours(report: &Report) -> Table {
                  least to most over the views";
     Table::of("colours", title, rungs)
         .column("geometry", |rung| (*rung).to_owned())
-        .column("pixels that keep together", |rung| of(rung, "shared", &|value| format!("{:.0} %", 100.0 * value)))
-        .column("no dispersion", |rung| of(rung, "undispersed", &digits(4)))
-        .column("the paper's, literal", |rung| of(rung, "paper", &digits(3)))
-        .column("best strength", |rung| of(rung, "strength", &digits(4)))
-        .column("the paper's at it", |rung| of(rung, "fitted", &digits(4)))
-        .column("exact tracker", |rung| of(rung, "tracker", &digits(5)))
+        .column("pixels that keep together", |rung| spread(rung, "shared", &|value| format!("{:.0} %", 100.0 * value)))
+        .column("no dispersion", |rung| spread(rung, "undispersed", &digits(4)))
+        .column("the paper's, literal", |rung| spread(rung, "paper", &digits(3)))
+        .column("best strength", |rung| spread(rung, "strength", &digits(4)))
+        .column("the paper's at it", |rung| spread(rung, "fitted", &digits(4)))
+        .column("exact tracker", |rung| spread(rung, "tracker", &digits(5)))
         .column("gain", |rung| {
             range(views(rung).into_iter().map(|view| gain(report, rung, view)), |gain| format!("{gain:.0} times"))
         })
@@ -301,7 +301,7 @@ fn colours(report: &Report) -> Table {
 
 fn ends(report: &Report) -> Table {
     let rungs: Vec<&str> = report.rungs("energy").into_iter().filter(|rung| rung.contains(", ")).collect();
-    let part = |rung: &str, at: usize| rung.splitn(2, ", ").nth(at).unwrap_or_default().to_owned();
+    let part = |rung: &str, index: usize| rung.splitn(2, ", ").nth(index).unwrap_or_default().to_owned();
     let shown = |rung: &str, measure: &str| {
         let rows = report.rows.iter().filter(|row| row.rung == rung && row.measure == measure);
         mean(&rows.filter_map(|row| row.value).collect::<Vec<_>>()).unwrap_or(f64::NAN)

@@ -89,7 +89,7 @@ pub(super) fn measure(
     report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
-    let drawn: Vec<Measured> = measured.iter().copied().filter(|of| of.rung != Rung::Reference).collect();
+    let drawn: Vec<Measured> = measured.iter().copied().filter(|variant| variant.rung != Rung::Reference).collect();
     let total = (COMPARED.len() + WALKED.len()) as u64 * drawn.len() as u64 * (u64::from(options.rounds) + 1);
     let mut done = 0;
     for (view, errors) in VIEWS.into_iter().zip(errors.chunks_exact(measured.len().max(1))) {
@@ -101,8 +101,8 @@ pub(super) fn measure(
             let scene = scene(view)?;
             let scene = if kind == GREY { grey(scene) } else { scene };
             let mut timed = Vec::new();
-            for &of in &drawn {
-                let frame = FrameTimer::new(gpu, &scene, &settings(view, of, options.frame), None, false)?;
+            for &variant in &drawn {
+                let frame = FrameTimer::new(gpu, &scene, &settings(view, variant, options.frame), None, false)?;
                 // The first frame includes compilation.
                 frame.run()?;
                 let staged = kind == GREY && view == STAGED;
@@ -119,12 +119,12 @@ pub(super) fn measure(
                     progress(done, total);
                 }
             }
-            for (of, timed) in drawn.iter().zip(&timed) {
-                rows.extend(timed.rows(&of.name(), view, kind, options.rounds)?);
+            for (variant, timed) in drawn.iter().zip(&timed) {
+                rows.extend(timed.rows(&variant.name(), view, kind, options.rounds)?);
             }
         }
-        for (of, errors) in measured.iter().zip(errors) {
-            let name = of.name();
+        for (variant, errors) in measured.iter().zip(errors) {
+            let name = variant.name();
             for (measure, error) in MEASURES.into_iter().zip(*errors) {
                 let kind = if measure == "walks" { RGB } else { GREY };
                 let ms = rows.iter().find(|row| row.rung == name && row.measure == kind).and_then(|row| row.ms);

@@ -29,10 +29,11 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     for name in VIEWS {
         let view = views::View::new(gpu, name)?;
         let walks = Walks::of(gpu, name)?;
-        for &of in &measured {
+        for &variant in &measured {
             progress("comparing", done, total);
-            let [nats, luminance] = if of.rung == Rung::Reference { [None; 2] } else { view.distance(gpu, of)? };
-            errors.push([nats, luminance, walks.as_ref().map(|walks| walks.distance(gpu, of)).transpose()?]);
+            let [nats, luminance] =
+                if variant.rung == Rung::Reference { [None; 2] } else { view.distance(gpu, variant)? };
+            errors.push([nats, luminance, walks.as_ref().map(|walks| walks.distance(gpu, variant)).transpose()?]);
             done += 1;
         }
     }

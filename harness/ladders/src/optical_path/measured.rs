@@ -16,11 +16,11 @@ impl Measured {
     /// the paper's own form.
     pub(super) fn all(rungs: &[Rung]) -> Vec<Self> {
         let is_papers = |rung: Rung| matches!(rung, Rung::OpticalPath(Paths { method: Method::Paper, .. }));
-        let of = |&rung: &Rung| {
+        let versions_of = |&rung: &Rung| {
             let ways = [false, true].into_iter().filter(move |unscaled| !unscaled || is_papers(rung));
             ways.map(move |unscaled| Self { rung, unscaled })
         };
-        rungs.iter().flat_map(of).collect()
+        rungs.iter().flat_map(versions_of).collect()
     }
 
     pub(super) fn name(self) -> String {

@@ -201,9 +201,9 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
     let mut lines = Vec::new();
     for solver in GROWING {
         for (part, what, width) in [(1, "the frame", 3), (0, "the solve", 1)] {
-            let at = |cells: u32| Some((f64::from(cells), solve_and_frame(report, solver, cells)?[part]));
+            let point = |cells: u32| Some((f64::from(cells), solve_and_frame(report, solver, cells)?[part]));
             let name = format!("{solver}, {what}");
-            lines.push(Series::line(&name, COLORS[group(solver)], width, CELLS.into_iter().filter_map(at)).dotted());
+            lines.push(Series::line(&name, COLORS[group(solver)], width, CELLS.into_iter().filter_map(point)).dotted());
         }
     }
     lines.retain(|series| !series.points.is_empty());

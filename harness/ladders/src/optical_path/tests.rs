@@ -31,7 +31,7 @@ fn report(rungs: &[(&str, f64, Option<f64>)]) -> Report {
 /// Returns the whole ladder with made-up values: more cells are slower and more accurate, and
 /// ping-pong is four times as slow as tiles.
 fn whole() -> Report {
-    let of = |rung: &'static str| {
+    let figures_of = |rung: &'static str| {
         let cells: f64 = rung.rsplit('-').next().and_then(|cells| cells.parse().ok()).unwrap_or(8.0);
         let slow = if rung.starts_with("ping-pong") { 4.0 } else { 1.0 };
         let near = if rung.starts_with("godunov") { 0.25 } else { 1.0 };
@@ -42,7 +42,7 @@ fn whole() -> Report {
         }
     };
     let rungs = RUNGS.into_iter().filter(|rung| *rung != REFERENCE).chain([UNSCALED]);
-    let mut report = report(&rungs.map(of).collect::<Vec<_>>());
+    let mut report = report(&rungs.map(figures_of).collect::<Vec<_>>());
     for (view, measure) in VIEWS.into_iter().flat_map(|view| MEASURES.map(|measure| (view, measure))) {
         report.rows.push(Row::new(REFERENCE, view, measure, None, ""));
     }
@@ -154,7 +154,7 @@ fn goals_are_judged_by_the_record() {
 #[test]
 fn plots_show_every_timed_rung_and_every_solver() {
     let plots = tables::plots(&whole());
-    let [error, growth] = [0, 1].map(|at: usize| plots[at].svg());
+    let [error, growth] = [0, 1].map(|index: usize| plots[index].svg());
     for rung in ["godunov-16", FINEST, LAMBERT] {
         assert!(error.contains(&format!(">{rung}</text>")), "{rung}");
     }

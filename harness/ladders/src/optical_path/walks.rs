@@ -39,18 +39,18 @@ impl Walks {
     /// Returns the distance of a rung's timed picture from this one. This one has half the side, so
     /// four pixels of one sample each are averaged into one. For the reference, returns this
     /// picture's own standard error.
-    pub(super) fn distance(&self, gpu: &Gpu, of: Measured) -> Result<f64, CostError> {
-        Ok(self.distances(gpu, of)?[0])
+    pub(super) fn distance(&self, gpu: &Gpu, variant: Measured) -> Result<f64, CostError> {
+        Ok(self.distances(gpu, variant)?[0])
     }
 
     /// Returns the distance after the best exposure, that as both are, and the best exposure. For the
     /// reference, this picture's own standard error.
-    pub(crate) fn distances(&self, gpu: &Gpu, of: Measured) -> Result<[f64; 3], CostError> {
-        if of.rung == Rung::Reference {
+    pub(crate) fn distances(&self, gpu: &Gpu, variant: Measured) -> Result<[f64; 3], CostError> {
+        if variant.rung == Rung::Reference {
             let error = self.standard_error()?;
             return Ok([error, error, 1.0]);
         }
-        let picture = halved(&render::render(gpu, &self.scene, &settings(self.name, of, [SIDE; 2]))?).linear;
+        let picture = halved(&render::render(gpu, &self.scene, &settings(self.name, variant, [SIDE; 2]))?).linear;
         let truth = &self.linear;
         Ok([exposed_distance(&picture, truth), distance(&picture, truth), best_exposure(&picture, truth)])
     }
@@ -86,13 +86,14 @@ mod tests {
     fn a_committed_picture_is_found_by_its_scene_and_its_walks_are_surer_than_lamberts_law() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let walks = Walks::of(gpu, "skin_bunny").expect("read").expect("committed");
-        let of = |rung: &str| {
+        let distance_of = |rung: &str| {
             let rung = rung.parse().expect(rung);
             walks.distance(gpu, Measured { rung, unscaled: false }).expect("rendered")
         };
-        let [own, lambert, shadowed, paths] = ["reference", "lambert", "lambert-shadowed", "godunov-32"].map(of);
-        println!("the walks' own {own:.4}, Lambert {lambert:.4}, with shadows {shadowed:.4}, ways {paths:.4}");
-        assert!(own > 0.0 && own < 0.3 * lambert && lambert < 1.0 && paths < 1.0);
+        let [noise, lambert, shadowed, paths] =
+            ["reference", "lambert", "lambert-shadowed", "godunov-32"].map(distance_of);
+        println!("the walks' own {noise:.4}, Lambert {lambert:.4}, with shadows {shadowed:.4}, ways {paths:.4}");
+        assert!(noise > 0.0 && noise < 0.3 * lambert && lambert < 1.0 && paths < 1.0);
         assert!(shadowed < 0.8 * lambert, "a body that is in the way of its own light: {shadowed} {lambert}");
         assert!(Walks::of(gpu, "ball").expect("read").is_none());
     }

@@ -54,7 +54,7 @@ impl Axis {
         let ends = [low / margin, high * margin];
         let candidates = match self.ticks.as_slice() {
             [] => candidates(ends[0].min(WIDEST[0]), ends[1].max(WIDEST[1]), room.labels(length)),
-            own => own.iter().map(|value| (*value, f64::INFINITY)).collect(),
+            given => given.iter().map(|value| (*value, f64::INFINITY)).collect(),
         };
         Scale { ends, pixels, is_log: true, further: apart(candidates, length, room) }
     }
@@ -252,8 +252,8 @@ mod tests {
                 let ticks: Vec<&Tick> = scale.ticks().collect();
                 assert!(ticks.len() <= 12, "{ticks:?}");
                 for pair in ticks.windows(2) {
-                    let apart = scale.at(pair[1].value) - scale.at(pair[0].value);
-                    assert!(apart >= room.between(&pair[0].text, &pair[1].text), "{length} {factor}: {pair:?}");
+                    let distance = scale.at(pair[1].value) - scale.at(pair[0].value);
+                    assert!(distance >= room.between(&pair[0].text, &pair[1].text), "{length} {factor}: {pair:?}");
                 }
             }
         }
@@ -263,10 +263,10 @@ mod tests {
     fn what_grows_names_the_labels_that_remain() {
         let scale = Axis::log("").scale([0.7, 159.0].into_iter(), [0.0, 888.0], Room::Across);
         let growing = scale.growing();
-        let of = |text: &str| growing.split(' ').find_map(|tick| tick.strip_prefix(&format!("{text}:")));
-        assert_eq!((of("0.002"), of("3"), of("1")), (Some("3"), None, Some("99")));
-        assert!(of("100000").is_some());
-        let listed = scale.ticks().all(|tick| of(&tick.text).is_some());
+        let growth_of = |text: &str| growing.split(' ').find_map(|tick| tick.strip_prefix(&format!("{text}:")));
+        assert_eq!((growth_of("0.002"), growth_of("3"), growth_of("1")), (Some("3"), None, Some("99")));
+        assert!(growth_of("100000").is_some());
+        let listed = scale.ticks().all(|tick| growth_of(&tick.text).is_some());
         assert!(listed, "{growing}");
     }
 }

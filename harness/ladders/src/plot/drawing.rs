@@ -109,32 +109,32 @@ impl Sheet<'_> {
         let Format { area: [left, top, right, bottom], .. } = *self.format;
         let mut grid = String::from("<g class=\"grid\" aria-hidden=\"true\">\n");
         for tick in self.up.ticks() {
-            let at = rounded(self.up.at(tick.value));
-            let (beside, below, text) = (left - 8.0, rounded(at + 5.0), &tick.text);
+            let y = rounded(self.up.at(tick.value));
+            let (beside, below, text) = (left - 8.0, rounded(y + 5.0), &tick.text);
             add(
                 &mut grid,
                 format_args!(
-                    r#"<line x1="{left}" x2="{right}" y1="{at}" y2="{at}"/><text x="{beside}" y="{below}" text-anchor="end">{text}</text>"#
+                    r#"<line x1="{left}" x2="{right}" y1="{y}" y2="{y}"/><text x="{beside}" y="{below}" text-anchor="end">{text}</text>"#
                 ),
             );
         }
         for tick in self.across.ticks() {
-            let at = rounded(self.across.at(tick.value));
+            let x = rounded(self.across.at(tick.value));
             let (value, below, text) = (tick.value, bottom + 22.0, &tick.text);
             add(
                 &mut grid,
                 format_args!(
-                    r#"<g class="column" data-x="{value}" transform="translate({at} 0)"><line y1="{top}" y2="{bottom}"/><text y="{below}" text-anchor="middle">{text}</text></g>"#
+                    r#"<g class="column" data-x="{value}" transform="translate({x} 0)"><line y1="{top}" y2="{bottom}"/><text y="{below}" text-anchor="middle">{text}</text></g>"#
                 ),
             );
         }
         let Axis { label, limit, .. } = &self.plot.x;
         if let Some((value, text)) = limit.filter(|(value, _)| self.across.holds(*value)) {
-            let (at, above) = (rounded(self.across.at(value)), top - 8.0);
+            let (x, above) = (rounded(self.across.at(value)), top - 8.0);
             add(
                 &mut grid,
                 format_args!(
-                    r#"<line class="limit" x1="{at}" x2="{at}" y1="{top}" y2="{bottom}"/><text x="{at}" y="{above}" text-anchor="middle">{}</text>"#,
+                    r#"<line class="limit" x1="{x}" x2="{x}" y1="{top}" y2="{bottom}"/><text x="{x}" y="{above}" text-anchor="middle">{}</text>"#,
                     escaped(text)
                 ),
             );

@@ -95,28 +95,28 @@ pub(super) fn place(wanted: &[Wanted<'_>], points: &[Place], lines: &[Line], roo
     let mut leaders: Vec<Line> = Vec::new();
     let mut labels = vec![None; wanted.len()];
     for index in order {
-        let own = &wanted[index];
+        let current = &wanted[index];
         let leader = |label: &Label| {
-            let [[x, y], [right, down]] = [own.at, label.from_point];
+            let [[x, y], [right, down]] = [current.at, label.from_point];
             label.led.then_some([[x, y], [x + right, y + down]])
         };
         let cost = |label: &Label| {
             let (led, area) = (leader(label), &label.area);
             let [left, top, right, bottom] = *area;
-            let gap = if own.weight == Weight::Small { APART } else { 0.0 };
+            let gap = if current.weight == Weight::Small { APART } else { 0.0 };
             let around = [left - gap, top - gap, right + gap, bottom + gap];
             let counts = [
                 lines.iter().filter(|line| crosses(line, &around)).count(),
                 leaders.iter().filter(|other| crosses(other, area)).count()
                     + taken.iter().filter(|other| led.is_some_and(|led| crosses(&led, other))).count(),
-                points.iter().filter(|point| own.is_blocked(area, point)).count(),
+                points.iter().filter(|point| current.is_blocked(area, point)).count(),
                 taken.iter().filter(|other| overlap(&around, other)).count(),
                 usize::from(!is_within(area, room)),
             ];
             counts.iter().zip(COSTS).map(|(count, cost)| count * cost).sum::<usize>()
         };
-        let Some(best) = candidates(own).into_iter().min_by_key(cost) else { continue };
-        let room = match own.weight {
+        let Some(best) = candidates(current).into_iter().min_by_key(cost) else { continue };
+        let room = match current.weight {
             Weight::Always => usize::MAX,
             Weight::Small => 1,
             _ => NO_ROOM,
@@ -202,7 +202,7 @@ mod tests {
         let wanted: Vec<Wanted<'_>> = points
             .iter()
             .enumerate()
-            .map(|(index, at)| Wanted { text: "walk-8+tracker", at: *at, weight: weight(index) })
+            .map(|(index, point)| Wanted { text: "walk-8+tracker", at: *point, weight: weight(index) })
             .collect();
         let labels = place(&wanted, &points, &[], &ROOM);
         assert!(labels[0].is_some() && labels[1].is_some(), "those are always there");
@@ -227,20 +227,22 @@ mod tests {
 
     #[test]
     fn a_small_label_stands_beside_its_point_or_nowhere() {
-        let at = [500.0, 200.0];
+        let centre = [500.0, 200.0];
         let around: Vec<Place> = (0..25)
-            .map(|index| [at[0] - 30.0 + 12.0 * f64::from(index % 5), at[1] - 30.0 + 12.0 * f64::from(index / 5)])
+            .map(|index| {
+                [centre[0] - 30.0 + 12.0 * f64::from(index % 5), centre[1] - 30.0 + 12.0 * f64::from(index / 5)]
+            })
             .collect();
-        let of = |weight| place(&[Wanted { text: "name", at, weight }], &around, &[], &ROOM)[0];
-        assert_eq!(of(Weight::Small), None);
-        assert!(of(Weight::Usual).expect("farther away").led);
+        let label_of = |weight| place(&[Wanted { text: "name", at: centre, weight }], &around, &[], &ROOM)[0];
+        assert_eq!(label_of(Weight::Small), None);
+        assert!(label_of(Weight::Usual).expect("farther away").led);
     }
 
     #[test]
     fn lines_cross_what_they_pass_through() {
         let area = [10.0, 10.0, 20.0, 20.0];
         let crossing = [[[0.0, 0.0], [30.0, 30.0]], [[15.0, 0.0], [15.0, 12.0]], [[12.0, 12.0], [13.0, 12.0]]];
-        let apart = [[[0.0, 0.0], [9.0, 9.0]], [[10.0, 0.0], [10.0, 30.0]], [[0.0, 15.0], [30.0, 60.0]]];
-        assert!(crossing.iter().all(|line| crosses(line, &area)) && !apart.iter().any(|line| crosses(line, &area)));
+        let passing = [[[0.0, 0.0], [9.0, 9.0]], [[10.0, 0.0], [10.0, 30.0]], [[0.0, 15.0], [30.0, 60.0]]];
+        assert!(crossing.iter().all(|line| crosses(line, &area)) && !passing.iter().any(|line| crosses(line, &area)));
     }
 }

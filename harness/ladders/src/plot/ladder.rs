@@ -19,8 +19,8 @@ pub struct Dot<'a> {
 impl<'a> Dot<'a> {
     /// Returns a point; `None` if a figure is missing or cannot be shown on a logarithmic axis.
     pub fn new(rung: &'a str, ms: Option<f64>, error: Option<f64>, group: usize) -> Option<Self> {
-        let at = ms.filter(|ms| *ms > 0.0).zip(error.filter(|error| *error > 0.0))?;
-        Some(Self { rung, at, group, marker: Marker::Disc, compared: true })
+        let figures = ms.filter(|ms| *ms > 0.0).zip(error.filter(|error| *error > 0.0))?;
+        Some(Self { rung, at: figures, group, marker: Marker::Disc, compared: true })
     }
 }
 
@@ -37,7 +37,7 @@ pub fn ladder(dots: &[Dot<'_>], groups: &[&str], front: (&str, u32), alike: f64)
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut series = vec![Series { stairs: true, ..Series::line(front.0, GREY, front.1, best) }];
     for (group, name) in groups.iter().enumerate() {
-        let own = dots.iter().zip(&is_front).filter(|(dot, _)| dot.group == group);
+        let members = dots.iter().zip(&is_front).filter(|(dot, _)| dot.group == group);
         let point = |(dot, &front): (&Dot<'_>, &bool)| Point {
             at: dot.at,
             marker: dot.marker,
@@ -45,7 +45,7 @@ pub fn ladder(dots: &[Dot<'_>], groups: &[&str], front: (&str, u32), alike: f64)
             front,
             ..Point::default()
         };
-        let points: Vec<Point> = own.map(point).collect();
+        let points: Vec<Point> = members.map(point).collect();
         if !points.is_empty() {
             let name = (*name).to_owned();
             series.push(Series { name, color: COLORS[group], line: 0, stairs: false, points });

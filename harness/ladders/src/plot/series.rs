@@ -106,7 +106,7 @@ pub struct Series {
 impl Series {
     /// Returns a line.
     pub fn line(name: &str, color: Color, width: u32, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let points = points.into_iter().map(|at| Point { at, ..Point::default() }).collect();
+        let points = points.into_iter().map(|position| Point { at: position, ..Point::default() }).collect();
         Self { name: name.to_owned(), color, line: width, stairs: false, points }
     }
 

@@ -72,10 +72,10 @@ fn portable_bounds_are_what_wgsl_allows() {
 #[test]
 fn lavapipe_bounds_are_what_its_record_allows() {
     let record = Lavapipe::recorded().expect("a record");
-    let of = |formula: &lapidary_assay::formula::Formula| {
+    let bounds_of = |formula: &lapidary_assay::formula::Formula| {
         lapidary_assay::examination::tolerance(formula, &documentation(formula).accuracy, true).expect("bounds")
     };
-    let found = unfitting(&record, of);
+    let found = unfitting(&record, bounds_of);
     let fault = fault(&found);
     assert!(fault.is_empty(), "\n{fault}");
 }

@@ -34,9 +34,9 @@ fn shader_and_mirror_bake_the_same_table() {
             assert_eq!(shader.len(), wanted.len());
             let mut moved = 0;
             for (index, (shader, mirror)) in shader.iter().zip(&wanted).enumerate() {
-                let apart = largest((*shader - *mirror).abs().to_array());
+                let difference = largest((*shader - *mirror).abs().to_array());
                 // Twice what the accuracy line allows either on lavapipe; a NaN fails.
-                assert!(apart <= 1.6e-6, "texel {index} of {size}: {shader} and {mirror}");
+                assert!(difference <= 1.6e-6, "texel {index} of {size}: {shader} and {mirror}");
                 for channel in 0..3 {
                     let kept = [shader[channel], mirror[channel]].map(|value| table::round(format, value));
                     assert!((kept[0] - kept[1]).abs() <= step.max(1.6e-6), "texel {index} of {size}: {kept:?}");
@@ -69,9 +69,9 @@ fn lookup_by_hand_is_the_samplers() {
     for half_degree in 0..=360u16 {
         let cosine = (0.5 * f32::from(half_degree)).to_radians().cos();
         for sigma in (0..=300u16).map(|index| 0.01 * f32::from(index)) {
-            let apart = largest((table.lookup(cosine, sigma) - table.sampled(cosine, sigma)).abs().to_array());
+            let difference = largest((table.lookup(cosine, sigma) - table.sampled(cosine, sigma)).abs().to_array());
             // Coordinates that are rounded at 65 texels.
-            assert!(apart < 2e-5, "{cosine} {sigma}: {apart:e}");
+            assert!(difference < 2e-5, "{cosine} {sigma}: {difference:e}");
         }
     }
 }

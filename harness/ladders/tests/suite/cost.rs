@@ -29,7 +29,7 @@ fn every_rung_measure_and_view_has_a_row() {
     assert!(report.rows.iter().all(|row| row.ms.is_none()));
     let rungs = ["surface", "proxy-1", "convex-4+tracker"];
     assert_eq!(report.rungs("change"), rungs);
-    assert!(rungs.iter().all(|rung| MEASURES.iter().all(|of| report.value(rung, "sapphire", of).is_some())));
+    assert!(rungs.iter().all(|rung| MEASURES.iter().all(|figure| report.value(rung, "sapphire", figure).is_some())));
     let error = |rung: &str, view: &str, measure: &str| report.value(rung, view, measure).expect("a number");
     for measure in ["flip", "rmse"] {
         let [surface, proxy, convex] =
@@ -76,14 +76,14 @@ fn errors_and_times_are_of_the_same_pictures() {
         let errors = Errors::between(&now, &reference);
         let same = |recorded: f64, found: f64| recorded == found;
         assert!(same(seen("flip"), errors.flip) && same(seen("rmse"), errors.rmse), "{name}: {errors:?}");
-        let sum = |of: &dyn Fn(usize, usize) -> f32| -> f64 {
+        let sum = |value: &dyn Fn(usize, usize) -> f32| -> f64 {
             (0..now.linear.len())
                 .flat_map(|k| (0..3).map(move |c| (k, c)))
-                .map(|(k, c)| f64::from(of(k, c)).powi(2))
+                .map(|(k, c)| f64::from(value(k, c)).powi(2))
                 .sum()
         };
-        let apart = sum(&|k, c| now.linear[k][c] - next.linear[k][c]);
-        let change = (apart / sum(&|k, c| reference.linear[k][c])).sqrt();
+        let difference = sum(&|k, c| now.linear[k][c] - next.linear[k][c]);
+        let change = (difference / sum(&|k, c| reference.linear[k][c])).sqrt();
         // The two sum in another order, and one rounds the difference to f32.
         assert!((seen("change") / change - 1.0).abs() < 1e-6 && change > 0.0, "{name}: {} {change}", seen("change"));
         let ms = report.ms("bvh-2", name, "flip");

@@ -82,7 +82,7 @@ fn the_second_pass_takes_each_share_from_its_neighbour() {
                 known(x, y.saturating_sub(1)),
             ];
             let taken: f32 = shares.to_array().iter().sum();
-            let sum: Vec4 = shares.to_array().into_iter().zip(around).map(|(share, of)| share * of).sum();
+            let sum: Vec4 = shares.to_array().into_iter().zip(around).map(|(share, neighbour)| share * neighbour).sum();
             let expected = (1.0 - taken) * known(x, y) + sum;
             worst = larger(worst, (pixel - expected).abs().max_element() / side as f32);
             mixed += usize::from(taken > 0.0);
@@ -109,8 +109,8 @@ fn other_bodies_stay_as_they_are() {
     let (mut others, mut changed) = (0, 0);
     for (pixel, (plain, smooth)) in plain.iter().zip(&smooth).enumerate() {
         if stones[pixel][3] == 0.0 {
-            let apart = (Vec4::from_array(*plain) - Vec4::from_array(*smooth)).abs().max_element();
-            assert!(apart <= 1e-3, "pixel {pixel}: {plain:?}, {smooth:?}");
+            let difference = (Vec4::from_array(*plain) - Vec4::from_array(*smooth)).abs().max_element();
+            assert!(difference <= 1e-3, "pixel {pixel}: {plain:?}, {smooth:?}");
             others += usize::from(plain[3] > 0.0);
         } else {
             changed += usize::from(plain != smooth);

@@ -73,8 +73,8 @@ fn a_walk_shows_what_all_planes_show() {
 fn rays_that_share_a_walk_show_what_two_walks_show() {
     for name in ["brilliant", "step_cut", "octahedron"] {
         let scene = Scene::named(name).expect("built in");
-        let [shared, apart] = ["walk-8+split", "convex-8+split"].map(|rung| picture(&scene, rung));
-        let errors = Errors::between(&shared, &apart);
+        let [shared, separate] = ["walk-8+split", "convex-8+split"].map(|rung| picture(&scene, rung));
+        let errors = Errors::between(&shared, &separate);
         println!("{name}: {errors:?}");
         // One pixel in two hundred shows such a sliver.
         assert!(errors.flip <= 0.015 && errors.rmse <= 0.02, "{name}: {errors:?}");

@@ -156,9 +156,9 @@ fn a_narrow_spot_sends_out_its_share_of_a_lamps_light() {
 #[ignore = "long; .ci/full runs it"]
 fn a_lamp_shines_through_a_body_as_walks_do() {
     let side = 16;
-    let at = |z: f32| Vec3::new(0.0, 1.0, z);
+    let place = |z: f32| Vec3::new(0.0, 1.0, z);
     let spot = Light::Spot {
-        position: at(0.0),
+        position: place(0.0),
         direction: Vec3::Z,
         intensity: Vec3::ONE,
         inner_angle: 0.799,
@@ -166,7 +166,7 @@ fn a_lamp_shines_through_a_body_as_walks_do() {
     };
     for (name, light, cone) in [
         ("middle", lamp(Vec3::ZERO, Vec3::ONE), -1.0),
-        ("near the side", lamp(at(5.0), Vec3::ONE), -1.0),
+        ("near the side", lamp(place(5.0), Vec3::ONE), -1.0),
         ("spot", spot, 0.8f64.cos()),
     ] {
         for (extinction, absorption) in [(1.0f32, 0.005f32), (2.0, 0.002)] {

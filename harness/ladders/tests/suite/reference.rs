@@ -69,11 +69,11 @@ fn surfaces_reflect_alike() {
             let covered = pairs().filter(|(drawn, _)| drawn[3] > 0.0).count();
             // A sample on an edge may fall to either side; the rasteriser rounds corners to 1/256
             // of its pixels.
-            let apart = |&(drawn, followed): &(&[f32; 4], &[f32; 4])| {
+            let differ = |&(drawn, followed): &(&[f32; 4], &[f32; 4])| {
                 !(0..4).all(|k| (drawn[k] - followed[k]).abs() <= 1e-4 * followed[k].abs().max(1.0))
             };
             require_finite(&drawn.linear, &followed.linear);
-            let edges = pairs().filter(apart).count();
+            let edges = pairs().filter(differ).count();
             println!("{name}: {edges} of {covered} pixels differ");
             assert!(covered > 1000 && edges * 200 < covered, "{name}: {edges} of {covered} pixels differ");
         }
@@ -111,9 +111,9 @@ fn the_committed_references_are_remade() {
             for (found, expected) in line.iter().zip(expected_line) {
                 // Half floats keep 11 bits; the f64 functions of another processor may send a ray
                 // to the other side of an edge.
-                let apart =
+                let difference =
                     (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, larger);
-                assert!(apart <= 0.002, "{} row {row}: {found:?}, committed {expected:?}", view.name);
+                assert!(difference <= 0.002, "{} row {row}: {found:?}, committed {expected:?}", view.name);
             }
         }
     }
@@ -138,12 +138,12 @@ fn stones_transmit_alike() {
         let drawn = render::render(lapidary_testing::gpu(), &scene, &drawn).expect("rendered");
         let settings = spectral::Settings { samples: 1, wavelengths: 7, ..spectral::Settings::of_size(48, 48) };
         let followed = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");
-        let apart = |(drawn, followed): (&[f32; 4], &[f32; 4])| {
+        let relative_error = |(drawn, followed): (&[f32; 4], &[f32; 4])| {
             (0..3).map(|k| (drawn[k] - followed[k]).abs() / followed[k].abs().max(0.1)).fold(0.0, larger)
         };
         require_finite(&drawn.linear, &followed.linear);
         let pairs = drawn.linear.iter().zip(&followed.linear).filter(|(drawn, _)| drawn[3] > 0.0);
-        let mut errors: Vec<f32> = pairs.map(apart).collect();
+        let mut errors: Vec<f32> = pairs.map(relative_error).collect();
         errors.sort_by(f32::total_cmp);
         let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
         println!("{name}: {} pixels, median {:e}, nine of ten {:e}", errors.len(), quantile(0.5), quantile(0.9));

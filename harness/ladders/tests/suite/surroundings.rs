@@ -65,8 +65,8 @@ fn smoothed_edges_and_the_picture_go_together() {
         let smooth = Settings { gem: GemOptions { footprint: true, ..plain.gem }, ..plain.clone() };
         let many = Settings { samples: 8, ..plain.clone() };
         let many = drawn(&tray, &many);
-        let apart = |settings: &Settings| Errors::between(&drawn(&tray, settings), &many).rmse;
-        let [plain, smooth] = [apart(&plain), apart(&smooth)];
+        let distance = |settings: &Settings| Errors::between(&drawn(&tray, settings), &many).rmse;
+        let [plain, smooth] = [distance(&plain), distance(&smooth)];
         println!("{outside}: RMSE to 64 samples {plain:.3}, {smooth:.3} with smoothed edges");
         assert!(smooth < 0.8 * plain, "{outside}: {smooth} of {plain}");
     }

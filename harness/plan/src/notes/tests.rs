@@ -182,9 +182,9 @@ fn what_is_not_clear_is_never_drawn_as_glass() {
         assert_eq!((rungs[0].as_str(), rungs[2].as_str()), (rung, "lambert"));
         assert!(!rungs[1].parse::<Rung>().expect("a rung").is_for_clear_stones(), "{rungs:?}");
         let said = said(&scene, &by(rung));
-        let of = |name: &str| {
+        let is_noted = |name: &str| {
             said.iter().any(|note| note.contains(&format!("object `{name}`: rung `{rung}` is for clear stones")))
         };
-        assert!(of("coin") && of(&scene.objects[1].name) && !of("ruby"), "{said:?}");
+        assert!(is_noted("coin") && is_noted(&scene.objects[1].name) && !is_noted("ruby"), "{said:?}");
     }
 }

@@ -94,8 +94,8 @@ impl Cells {
         let cell = place.floor();
         // Distances at which the ray leaves the cell across each axis, and from one crossing to the
         // next. A component of 0 never crosses.
-        let apart = direction.abs().max(DVec3::splat(1e-300)).recip() / self.per_length;
-        let mut next = (step * (cell - place) + 0.5 * (step + 1.0)) * apart;
+        let spacing = direction.abs().max(DVec3::splat(1e-300)).recip() / self.per_length;
+        let mut next = (step * (cell - place) + 0.5 * (step + 1.0)) * spacing;
         let (step, size) = (step.as_ivec3(), self.size.as_ivec3());
         let mut cell = cell.as_ivec3();
         loop {
@@ -108,7 +108,7 @@ impl Cells {
                 return true;
             }
             cell[axis] += step[axis];
-            next[axis] += apart[axis];
+            next[axis] += spacing[axis];
             if cell.cmplt(IVec3::ZERO).any() || cell.cmpge(size).any() {
                 return true;
             }

@@ -226,7 +226,7 @@ pub fn render_samples(
     let mut samples = Vec::with_capacity(window.width as usize * window.height as usize * side * side);
     for row in &rows {
         for line in 0..side {
-            samples.extend(row.iter().flat_map(|(_, own)| &own[line * side..][..side]));
+            samples.extend(row.iter().flat_map(|(_, taken)| &taken[line * side..][..side]));
         }
     }
     let pixels: Vec<Pixel> = rows.into_iter().flatten().map(|(pixel, _)| pixel).collect();

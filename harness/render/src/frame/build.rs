@@ -332,10 +332,10 @@ impl<'gpu> Builder<'gpu> {
 
     /// Appends a pass that reads the upper left part of a texture back, to this position in its
     /// picture.
-    pub(crate) fn read(&mut self, readback: Readback, size: [u32; 2], at: [u32; 2]) {
+    pub(crate) fn read(&mut self, readback: Readback, size: [u32; 2], position: [u32; 2]) {
         let Readback { picture, texture, buffer } = readback;
         let bytes_per_row = self.bytes_per_row(texture, size[0]);
-        self.pass(Pass::Read(Read { picture, texture, size, at, buffer, bytes_per_row }));
+        self.pass(Pass::Read(Read { picture, texture, size, at: position, buffer, bytes_per_row }));
     }
 
     /// Appends a pass that reads a whole texture back, as the named picture.

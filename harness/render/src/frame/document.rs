@@ -337,8 +337,8 @@ fn pass_row(pass: &Pass) -> PassRow {
         },
         &Pass::Clear { buffer, bytes } => PassRow::Clear { buffer: buffer.0, bytes },
         &Pass::Copy { from, to, bytes } => PassRow::Copy { from: from.0, to: to.0, bytes },
-        &Pass::Read(Read { picture, texture, size, at, buffer, bytes_per_row }) => {
-            PassRow::Read { picture, at, size, texture: texture.0, buffer: buffer.0, bytes_per_row }
+        &Pass::Read(Read { picture, texture, size, at: position, buffer, bytes_per_row }) => {
+            PassRow::Read { picture, at: position, size, texture: texture.0, buffer: buffer.0, bytes_per_row }
         }
     }
 }

@@ -58,9 +58,9 @@ impl Frame {
     /// # Panics
     /// If the handle is of another frame.
     #[must_use]
-    pub fn resource(&self, of: impl Into<Bound>) -> &Resource {
+    pub fn resource(&self, handle: impl Into<Bound>) -> &Resource {
         let (Bound::Buffer(Buffer(place)) | Bound::Texture(Texture(place), _) | Bound::Sampler(Sampler(place))) =
-            of.into();
+            handle.into();
         &self.resources[place]
     }
 

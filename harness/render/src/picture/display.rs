@@ -90,7 +90,7 @@ pub(crate) fn group(
 impl Picture {
     /// Copies in a part that was read back, without gaps between rows.
     pub(crate) fn take(&mut self, read: &Read, texels: &[u8]) {
-        let ([width, _], [left, top]) = (read.size.map(|side| side as usize), read.at.map(|at| at as usize));
+        let ([width, _], [left, top]) = (read.size.map(|side| side as usize), read.at.map(|edge| edge as usize));
         let start = |row: usize| (top + row) * self.width as usize + left;
         if read.picture == ENCODED {
             for (row, texels) in texels.chunks_exact(4 * width).enumerate() {

@@ -82,8 +82,8 @@ pub fn png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, Strin
 
 fn exr(picture: &Picture) -> Result<Vec<u8>, String> {
     let width = picture.width as usize;
-    let channels = exr::prelude::SpecificChannels::rgba(|at: exr::prelude::Vec2<usize>| {
-        let [r, g, b, a] = picture.linear[at.1 * width + at.0];
+    let channels = exr::prelude::SpecificChannels::rgba(|place: exr::prelude::Vec2<usize>| {
+        let [r, g, b, a] = picture.linear[place.1 * width + place.0];
         (f16::from_f32(r), f16::from_f32(g), f16::from_f32(b), f16::from_f32(a))
     });
     let mut image = Image::from_channels((width, picture.height as usize), channels);

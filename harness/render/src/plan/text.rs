@@ -105,7 +105,7 @@ impl Plan {
         if steps.is_empty() {
             return writeln!(f, "\npasses\n  none: this rung is computed on the CPU");
         }
-        let wide = |of: fn(&Step) -> &str| steps.iter().map(|step| of(step).len()).max().unwrap_or(0);
+        let wide = |column: fn(&Step) -> &str| steps.iter().map(|step| column(step).len()).max().unwrap_or(0);
         let [pass, object] = [wide(|step| &step.pass), wide(|step| &step.object)];
         writeln!(f, "\npasses, in order")?;
         for (number, step) in (1..).zip(steps) {

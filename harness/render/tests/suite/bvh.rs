@@ -154,8 +154,8 @@ fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> 
     let (origin, direction) = (query.origin.as_dvec3(), query.direction.as_dvec3());
     let crossings = oracle::crossings(positions, &body.bvh.indices, origin, direction, query.left, bound);
     let distance = f64::from(hit.distance);
-    let own = crossings.iter().find(|crossing| crossing.triangle == hit.triangle);
-    if own.is_none() {
+    let matching = crossings.iter().find(|crossing| crossing.triangle == hit.triangle);
+    if matching.is_none() {
         return Some(format!("{hit:?} is passed by more than {bound:e}"));
     }
     let nearer = |crossing: &&oracle::Crossing| {
@@ -222,9 +222,13 @@ fn a_loop_over_all_triangles_meets_the_same() {
                 assert_eq!(fault, None, "{}: from {} to {}", body.name, query.origin, query.direction);
             }
             let reach: f64 = [tree, every].map(|hit| slack(&body, query, hit.triangle).abs()).iter().sum();
-            let apart = f64::from(tree.distance - every.distance).abs();
+            let difference = f64::from(tree.distance - every.distance).abs();
             // A NaN fails.
-            assert!(apart <= reach, "{}: {tree:?} and {every:?} are {apart:e} apart, at most {reach:e}", body.name);
+            assert!(
+                difference <= reach,
+                "{}: {tree:?} and {every:?} are {difference:e} apart, at most {reach:e}",
+                body.name
+            );
         }
         println!("{}: {others} of {} rays meet another triangle by the loop", body.name, queries.len());
         // Not a bound, but it detects a tree that leads elsewhere.

@@ -109,10 +109,10 @@ const SHAPES: [Shape; 3] = [
 ];
 
 /// Returns triangles as position and normal at each corner.
-fn mesh(at: fn(f64, f64) -> (DVec3, DVec3)) -> Vec<[f32; 6]> {
+fn mesh(surface: fn(f64, f64) -> (DVec3, DVec3)) -> Vec<[f32; 6]> {
     let corner = |i: u32, j: u32| {
         let turn = std::f64::consts::TAU / f64::from(AROUND);
-        let (position, normal) = at(turn * f64::from(i), turn * f64::from(j));
+        let (position, normal) = surface(turn * f64::from(i), turn * f64::from(j));
         let (p, n) = (position.as_vec3(), normal.as_vec3());
         [p.x, p.y, p.z, n.x, n.y, n.z]
     };

@@ -102,9 +102,9 @@ impl Sums {
             let solid_angle = (edge(row) - edge(row + 1)) * 2.0 * PI / f64::from(grid.x);
             for column in 0..grid.x {
                 let uv = (DVec2::new(column.into(), row.into()) + 0.5) / grid.as_dvec2();
-                let at = oracle::texels(uv, size);
-                let along = |row: u32| texel(at.lower.x, row).lerp(texel(at.upper.x, row), at.weight.x);
-                let arriving = solid_angle * along(at.lower.y).lerp(along(at.upper.y), at.weight.y);
+                let lookup = oracle::texels(uv, size);
+                let along = |row: u32| texel(lookup.lower.x, row).lerp(texel(lookup.upper.x, row), lookup.weight.x);
+                let arriving = solid_angle * along(lookup.lower.y).lerp(along(lookup.upper.y), lookup.weight.y);
                 sums.light += arriving;
                 for (k, value) in basis(oracle::direction_from_uv(uv)).into_iter().enumerate() {
                     sums.coefficients[k] += value * arriving;
@@ -244,11 +244,11 @@ fn each_harmonic_is_found_alone() {
         // The light adds up to 4 pi and, of the first harmonic, its root.
         let light = DVec3::splat(4.0 * PI + (4.0 * PI).sqrt());
         let allowed = allowed(light * 0.85, light, &three).x + of_middles(height, 1.85 * 0.85);
-        for (channel, own) in (first..).enumerate().take(3) {
+        for (channel, harmonic) in (first..).enumerate().take(3) {
             for (k, found) in found.iter().enumerate() {
-                let expected = f64::from(u8::from(k == 0)) * (4.0 * PI).sqrt() + f64::from(u8::from(k == own));
+                let expected = f64::from(u8::from(k == 0)) * (4.0 * PI).sqrt() + f64::from(u8::from(k == harmonic));
                 let off = (found[channel] - expected).abs();
-                assert!(off < allowed, "harmonic {own}, coefficient {k}: {} {allowed}", found[channel]);
+                assert!(off < allowed, "harmonic {harmonic}, coefficient {k}: {} {allowed}", found[channel]);
             }
         }
     }
@@ -260,14 +260,14 @@ fn the_products_own_harmonics_are_the_same() {
     for (width, height) in SIZES {
         let map = sunny(width, height, 2 * width / 3);
         let (found, sums) = (found(&recipe(), &map), Sums::of(&map));
-        let own = harmonics::project(&Environment::Map(map.clone()));
+        let projected = harmonics::project(&Environment::Map(map.clone()));
         let mut worst = 0.0;
         for k in 0..COUNT {
             // Its harmonics are those of the mirror, in f32.
             let allowed = allowed(sums.magnitudes[k], sums.light, &map) + 5e-6 * sums.light;
-            let off = (found[k] - own[k]).abs();
+            let off = (found[k] - projected[k]).abs();
             worst = larger(worst, (off / sums.light).max_element());
-            assert!(off.cmplt(allowed).all(), "{width} x {height}, {k}: {} {}", found[k], own[k]);
+            assert!(off.cmplt(allowed).all(), "{width} x {height}, {k}: {} {}", found[k], projected[k]);
         }
         println!("{width} x {height}: off by {worst:.1e} of the light");
     }
@@ -345,14 +345,14 @@ fn cdrf_shading_draws_with_the_buffer() {
         executor.run(take).expect("run");
         picture
     };
-    let own = drawn(None);
-    let brightest = own.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
-    let covered = own.iter().filter(|pixel| pixel[3] > 0.0).count();
-    assert!(covered > own.len() / 10 && brightest > 0.1, "{covered} pixels, {brightest}");
-    let of = |map: &EnvironmentMap| furthest(&drawn(Some(words(&recipe(), map))), &own) / brightest;
+    let unchanged = drawn(None);
+    let brightest = unchanged.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+    let covered = unchanged.iter().filter(|pixel| pixel[3] > 0.0).count();
+    assert!(covered > unchanged.len() / 10 && brightest > 0.1, "{covered} pixels, {brightest}");
+    let difference = |map: &EnvironmentMap| furthest(&drawn(Some(words(&recipe(), map))), &unchanged) / brightest;
     let mut flipped = map.clone();
     flipped.pixels = map.pixels.chunks(64).rev().flatten().copied().collect();
-    let [same, other] = [of(&map), of(&flipped)];
+    let [same, other] = [difference(&map), difference(&flipped)];
     println!("off by {same:.1e} of the brightest, {other:.2} with the map upside down");
     assert!(same < 2e-5 && other > 0.1, "{same} {other}");
 }

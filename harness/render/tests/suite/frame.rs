@@ -25,8 +25,8 @@ fn both(name: &str, settings: &Settings) -> [(Vec<f32>, Vec<u8>); 2] {
     let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
     assert!(covered > picture.linear.len() / 20, "{name}: {covered} pixels");
     let linear = bytemuck::pod_collect_to_vec(&pictures["linear picture"].2);
-    let own = (picture.linear.concat(), picture.encoded.concat());
-    [(linear, pictures["encoded picture"].2.clone()), own]
+    let rendered = (picture.linear.concat(), picture.encoded.concat());
+    [(linear, pictures["encoded picture"].2.clone()), rendered]
 }
 
 fn by_material() -> Settings {
@@ -60,8 +60,8 @@ fn another_host_draws_the_same_pictures() {
         ("ruby", Settings { gem: GemOptions { deferred: true, ..GemOptions::default() }, ..of_rung("proxy-2") }),
     ];
     for (name, settings) in cases {
-        let [(host, host_encoded), (own, own_encoded)] = both(name, &settings);
-        let differing = host.iter().zip(&own).filter(|(host, own)| host.to_bits() != own.to_bits()).count();
+        let [(host, host_encoded), (own_linear, own_encoded)] = both(name, &settings);
+        let differing = host.iter().zip(&own_linear).filter(|(host, ours)| host.to_bits() != ours.to_bits()).count();
         assert_eq!((differing, host_encoded == own_encoded), (0, true), "{name}");
     }
 }
@@ -70,10 +70,10 @@ fn another_host_draws_the_same_pictures() {
 /// between any two runs, also of the renderer itself.
 #[test]
 fn another_host_draws_the_bunny_as_near_as_a_second_run_does() {
-    let [(host, host_encoded), (own, own_encoded)] = both("bunny", &by_material());
-    let apart = |(host, own): (&f32, &f32)| (host - own).abs() / own.abs().max(1e-3);
-    let worst = host.iter().zip(&own).map(apart).fold(0.0, larger);
-    let steps = host_encoded.iter().zip(&own_encoded).map(|(host, own)| host.abs_diff(*own)).max();
+    let [(host, host_encoded), (own_linear, own_encoded)] = both("bunny", &by_material());
+    let relative_difference = |(host, ours): (&f32, &f32)| (host - ours).abs() / ours.abs().max(1e-3);
+    let worst = host.iter().zip(&own_linear).map(relative_difference).fold(0.0, larger);
+    let steps = host_encoded.iter().zip(&own_encoded).map(|(host, ours)| host.abs_diff(*ours)).max();
     println!("off by {worst:.1e}, {steps:?} steps");
     assert!(worst < 1e-5 && steps <= Some(1), "{worst} {steps:?}");
 }

@@ -35,11 +35,11 @@ fn drawn(scene: &Scene) -> Frame {
 
 /// Returns the share of the pixels that differ by more than a thousandth.
 fn differing(one: &Picture, other: &Picture) -> f64 {
-    let apart = |(one, other): (&[f32; 4], &[f32; 4])| {
+    let differs = |(one, other): (&[f32; 4], &[f32; 4])| {
         let scale = one.iter().chain(other).map(|part| part.abs()).fold(1.0, larger);
         one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, larger) > 1e-3 * scale
     };
-    let count = one.linear.iter().zip(&other.linear).filter(|pair| apart((pair.0, pair.1))).count();
+    let count = one.linear.iter().zip(&other.linear).filter(|pair| differs((pair.0, pair.1))).count();
     count as f64 / one.linear.len() as f64
 }
 
@@ -112,9 +112,9 @@ fn copies_show_what_bodies_apart_show() {
     let without = Effects::of(&[Effect::Instances]);
     let scene = ring();
     let copies = render(gpu(), &scene, &settings()).expect("rendered");
-    let apart = Scene { objects: scene.objects[0].apart(), ..scene.clone() };
-    let apart = render(gpu(), &apart, &settings()).expect("rendered");
-    assert!(differing(&copies, &apart) < 0.01, "{}", differing(&copies, &apart));
+    let bodies = Scene { objects: scene.objects[0].apart(), ..scene.clone() };
+    let separate = render(gpu(), &bodies, &settings()).expect("rendered");
+    assert!(differing(&copies, &separate) < 0.01, "{}", differing(&copies, &separate));
     // Asked not to draw by instances, the renderer takes the stones apart by itself.
     let asked = Settings { without, ..settings() };
     let left_out = frame(None, &scene, &asked).expect("a frame");
@@ -125,7 +125,7 @@ fn copies_show_what_bodies_apart_show() {
     copies.places.iter_mut().for_each(|place| place.attenuation_color = None);
     plain.objects.push(object);
     let bvh = |settings: Settings| Settings { rung: "bvh-4".parse().expect("a rung"), ..settings };
-    let [by_copies, joined] = [bvh(settings()), bvh(asked)].map(|of| render(gpu(), &plain, &of).expect("rendered"));
+    let [by_copies, joined] = [bvh(settings()), bvh(asked)].map(|case| render(gpu(), &plain, &case).expect("rendered"));
     assert!(differing(&by_copies, &joined) < 0.02, "{}", differing(&by_copies, &joined));
 }
 

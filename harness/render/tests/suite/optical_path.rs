@@ -56,12 +56,12 @@ fn truth<N: Number>(case: &Case, stencil: Stencil, seeds: &[N]) -> Vec<N> {
 /// Returns the first voxel at which two lists of costs differ by more than `share` of the cost, or
 /// of 1 if that is larger.
 fn differs(one: &[f32], other: &[f32], share: f32) -> Option<String> {
-    let apart = |(one, other): (&f32, &f32)| {
+    let is_off = |(one, other): (&f32, &f32)| {
         let near = (one - other).abs() <= share * one.abs().max(1.0);
         one.to_bits() != other.to_bits() && (share == 0.0 || !near)
     };
     assert_eq!(one.len(), other.len());
-    let index = one.iter().zip(other).position(apart)?;
+    let index = one.iter().zip(other).position(is_off)?;
     Some(format!("voxel {index}: {} and {}", one[index], other[index]))
 }
 

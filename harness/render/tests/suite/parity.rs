@@ -225,11 +225,11 @@ fn so_it_is_among_other_bodies() {
     check("brilliant", "copied, among", &parity(&among(copied("brilliant")), &settings, None));
     // Many pixels do show them.
     let scene = among(Scene::named("brilliant").expect("built in"));
-    let apart =
+    let alone =
         Settings { gem: GemOptions { outside: Some(Outside::Environment), ..settings.gem }, ..settings.clone() };
-    let [met, apart] =
-        [settings, apart].map(|one| render::render(lapidary_testing::gpu(), &scene, &one).expect("rendered").linear);
-    let differ = met.iter().zip(&apart).filter(|(met, apart)| met != apart).count();
+    let [met, unmet] =
+        [settings, alone].map(|one| render::render(lapidary_testing::gpu(), &scene, &one).expect("rendered").linear);
+    let differ = met.iter().zip(&unmet).filter(|(met, unmet)| met != unmet).count();
     let covered = met.iter().filter(|pixel| pixel[3] == 1.0).count();
     assert!(differ > covered / 8, "{differ} of {covered} pixels show another body");
 }
@@ -365,12 +365,12 @@ fn total_reflection_is_decided_for_each_channel() {
     let picture = render::render(lapidary_testing::gpu(), &scene, &tracker).expect("rendered");
     let viewer = Viewer::new(&scene, SIDE, SIDE);
     let stone = Stone::new(object, &tracker).expect("convex");
-    let [tracked, apart, alike] = [&tracker, &separate, &one].map(|settings| Shading::new(&object.material, settings));
+    let [tracked, split, alike] = [&tracker, &separate, &one].map(|settings| Shading::new(&object.material, settings));
     let (mut mixed, mut agree, mut one_agrees) = (0, 0, 0);
     for (row, column) in (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column))) {
         let Some(seen) = viewer.see(&object.mesh, f64::from(column) + 0.5, f64::from(row) + 0.5) else { continue };
         let eye = scene.camera.eye;
-        let rays = apart.pixel(&stone, seen, eye).rays;
+        let rays = split.pixel(&stone, seen, eye).rays;
         let same_facets = |k: usize| rays.iter().all(|ray| ray[k].facet == rays[0][k].facet);
         let Some(hit) = (0..6).find(|&k| rays.iter().any(|ray| ray[k].total != rays[0][k].total)) else { continue };
         if !(0..=hit).all(same_facets) {
@@ -382,10 +382,10 @@ fn total_reflection_is_decided_for_each_channel() {
         agree += usize::from(pixel.rays[0][hit].total == by_channel);
         one_agrees += usize::from(alike.pixel(&stone, seen, eye).rays[0][hit].total * 0b111 == by_channel);
         let [r, g, b, _] = picture.linear[(row * SIDE + column) as usize];
-        let apart = largest((glam::Vec3::new(r, g, b) - pixel.radiance).abs().to_array());
+        let difference = largest((glam::Vec3::new(r, g, b) - pixel.radiance).abs().to_array());
         // At the critical angle a channel's reflectance departs from 1 like a square root: by 0.1
         // for an angle off by 2^-13.
-        assert!(apart <= 0.05 * pixel.radiance.max_element().max(1.0), "{column} {row}: {apart}");
+        assert!(difference <= 0.05 * pixel.radiance.max_element().max(1.0), "{column} {row}: {difference}");
     }
     println!("{mixed} pixels; the tracker decides {agree} as separate rays do, one index {one_agrees}");
     assert!(mixed >= 20, "{mixed}");

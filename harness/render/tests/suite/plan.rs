@@ -433,8 +433,8 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
         // The remaining pipelines are compiled without the effect, and are smaller than with it.
         let value = |listing: &Listing, value: f64| {
             let name = effect.override_name();
-            let of = listing.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
-            of.filter(|(known, set)| known == name && *set == value).count()
+            let overrides = listing.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
+            overrides.filter(|(known, set)| known == name && *set == value).count()
         };
         assert!(value(&on, 1.0) > 0 && value(&off, 1.0) == 0, "{effect}: compiled with {}", value(&off, 1.0));
         let instructions = |listing: &Listing| -> usize { listing.pipelines.iter().map(|p| p.instructions).sum() };
@@ -529,9 +529,9 @@ type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
 fn parts(scene: &Scene) -> Parts {
     // What leaves a stone meets no other body, and no body casts a shadow: with others beside it, a
     // body takes more.
-    let apart = GemOptions { outside: Some(Outside::Environment), ..GemOptions::default() };
+    let options = GemOptions { outside: Some(Outside::Environment), ..GemOptions::default() };
     let without = Effects::of(&[Effect::Shadow, Effect::ColoredShadow]);
-    let listing = planned(scene, &Settings { gem: apart, without, ..settings() });
+    let listing = planned(scene, &Settings { gem: options, without, ..settings() });
     // Pipelines are numbered in the order of their creation, so they are compared by contents.
     let key = |name: &str| {
         let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == name);
@@ -561,7 +561,7 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
     let groups: BTreeSet<&str> = vitrine.objects.iter().map(group).collect();
     let subset = |kept: usize| {
         let is_kept = |object: &&Object| {
-            groups.iter().position(|of| *of == group(object)).is_some_and(|place| kept >> place & 1 == 1)
+            groups.iter().position(|listed| *listed == group(object)).is_some_and(|place| kept >> place & 1 == 1)
         };
         Scene { objects: vitrine.objects.iter().filter(is_kept).cloned().collect(), ..vitrine.clone() }
     };
@@ -581,8 +581,8 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
     }
     // Each object also has a resource of its own.
     for object in &vitrine.objects {
-        let own = |name: &str| name.starts_with(&format!("{}/", object.name));
-        assert!(alone.iter().any(|parts| parts.0.iter().any(|resource| own(&resource.name))), "{}", object.name);
+        let is_own = |name: &str| name.starts_with(&format!("{}/", object.name));
+        assert!(alone.iter().any(|parts| parts.0.iter().any(|resource| is_own(&resource.name))), "{}", object.name);
     }
 }
 
@@ -634,7 +634,7 @@ fn ways_that_are_left_out_take_nothing_along() {
     }
     let dark = Scene { lights: Vec::new(), ..bunny };
     let listing = planned(&dark, &of_rung("godunov-64"));
-    let maps: Vec<&Resource> = listing.resources.iter().filter(|of| of.name.contains("maps")).collect();
+    let maps: Vec<&Resource> = listing.resources.iter().filter(|resource| resource.name.contains("maps")).collect();
     assert!(!maps.is_empty() && maps.iter().all(|map| map.bytes <= 16), "{maps:?}");
     assert!(passes(&listing).iter().all(|pass| !["voxelize", "seeds", "solve"].contains(pass)));
 }
@@ -681,8 +681,8 @@ fn shape_and_quality_choose_the_rung() {
 /// A plan states the cost and the error of the chosen rung, from the committed ladder.
 #[test]
 fn a_plan_says_what_quality_stands_for() {
-    let of = |quality| Plan::of(&one("ruby"), &Settings { quality, ..settings() }).expect("a plan").to_string();
-    let (fast, best) = (of(Quality::Fast), of(Quality::Best));
+    let text_of = |quality| Plan::of(&one("ruby"), &Settings { quality, ..settings() }).expect("a plan").to_string();
+    let (fast, best) = (text_of(Quality::Fast), text_of(Quality::Best));
     assert!(fast.contains("quality fast: FLIP 0.") && !fast.contains("times the time"), "{fast}");
     assert!(best.contains("quality best: FLIP 0.") && best.contains("times the time of fast"), "{best}");
     let named = Plan::of(&one("ruby"), &of_rung("convex-2")).expect("a plan").to_string();

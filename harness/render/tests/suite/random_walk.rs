@@ -93,8 +93,8 @@ fn shader_and_mirror_walk_the_same_ways() {
             }
             compared += 1;
             assert_eq!((shader.outcome, shader.scatterings), (mirror.outcome, mirror.scatterings), "{slab:?} {number}");
-            let apart = (shader.cosine - mirror.cosine).abs().max((shader.place - mirror.place).abs() * 0.1);
-            assert!(apart < slack, "{slab:?} {number}: {shader:?} {mirror:?}");
+            let difference = (shader.cosine - mirror.cosine).abs().max((shader.place - mirror.place).abs() * 0.1);
+            assert!(difference < slack, "{slab:?} {number}: {shader:?} {mirror:?}");
         }
         println!("{compared} compared, {skipped} too close to tell");
         assert!(skipped * 20 < compared);

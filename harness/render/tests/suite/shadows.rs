@@ -97,8 +97,10 @@ fn seen(triangles: &Triangles, [point, normal]: [DVec3; 2], light: &Light, texel
     let along = normal.any_orthonormal_vector();
     let across = normal.cross(along);
     let about = (0..8).map(|step| 3.0 * texel * glam::DVec2::from_angle(TAU * f64::from(step) / 8.0));
-    let places: Vec<DVec3> =
-        std::iter::once(glam::DVec2::ZERO).chain(about).map(|at| point + at.x * along + at.y * across).collect();
+    let places: Vec<DVec3> = std::iter::once(glam::DVec2::ZERO)
+        .chain(about)
+        .map(|offset| point + offset.x * along + offset.y * across)
+        .collect();
     let hidden = |height: f64| {
         places.iter().filter(move |place| {
             let start = **place + height * texel * normal;
@@ -209,11 +211,11 @@ fn shadows_are_those_that_rays_find() {
     for (name, light) in lapidary_testing::sampled(lights(), 3) {
         let scene = scene(light);
         let settings = settings("lambert-shadowed");
-        let of = |source: &str| {
+        let counts_of = |source: &str| {
             let picture = render::render_with(lapidary_testing::gpu(), &scene, &settings, source).expect("rendered");
             judged(&compared(&scene, &light, &picture.linear))
         };
-        let [lit, dark, between, wrong] = of(&recipe);
+        let [lit, dark, between, wrong] = counts_of(&recipe);
         println!("{name}: {lit} lit, {dark} dark, {between} between, {wrong} wrong");
         assert_eq!(wrong, 0, "{name}");
         assert!(lit > 1000 && dark > 150 && between < (lit + dark) / 2, "{name}: {lit} {dark} {between}");
@@ -224,7 +226,7 @@ fn shadows_are_those_that_rays_find() {
             recipe.replace(bias, &bias.replace("2.0f *", "-2.0f *")),
             recipe.replace("seen.w < 0.0f || height <= bias", "seen.w < 0.0f || height > bias"),
         ] {
-            let [.., wrong] = of(&planted);
+            let [.., wrong] = counts_of(&planted);
             println!("{name}, planted: {wrong} wrong");
             assert!(wrong > 100, "{name}: {wrong}");
         }
@@ -384,10 +386,10 @@ fn each_form_of_a_shadow_on_scattering_matter_draws_more_than_the_one_before() {
     // In skin they are not, and light through thin parts only adds.
     let [soft, colors, through] = ShadowForm::ALL.map(|form| draw(&bunny, form));
     for channel in 0..3 {
-        let apart = most(&soft, &colors, channel).max(most(&colors, &soft, channel));
+        let difference = most(&soft, &colors, channel).max(most(&colors, &soft, channel));
         let (added, lost) = (most(&through, &colors, channel), most(&colors, &through, channel));
-        println!("channel {channel}: soft and colors {apart:.3}, through adds {added:.3} and loses {lost:.1e}");
-        assert!(apart > 0.005 && added > 0.01 && lost <= 0.0, "{channel}: {apart} {added} {lost}");
+        println!("channel {channel}: soft and colors {difference:.3}, through adds {added:.3} and loses {lost:.1e}");
+        assert!(difference > 0.005 && added > 0.01 && lost <= 0.0, "{channel}: {difference} {added} {lost}");
     }
 }
 

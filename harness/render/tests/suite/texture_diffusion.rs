@@ -57,7 +57,9 @@ fn diffuse(
     executor
         .run(|_, texels| {
             found.extend(texels.chunks_exact(8).map(|texel| {
-                let half = |at: usize| Half::from_bits(u16::from_le_bytes([texel[2 * at], texel[2 * at + 1]])).to_f32();
+                let half = |channel: usize| {
+                    Half::from_bits(u16::from_le_bytes([texel[2 * channel], texel[2 * channel + 1]])).to_f32()
+                };
                 [half(0), half(1), half(2), half(3)]
             }));
         })
@@ -151,12 +153,12 @@ fn worst(placement: Placement, pairs: u32, ratio: f32, sigmas: &[f64]) -> f64 {
         .into_par_iter()
         .map(|(sigma, channels)| {
             let row = blurred(placement, pairs, channels, (sigma / TEXEL) as f32, &light);
-            let of = |channel: usize| {
+            let error_of = |channel: usize| {
                 let texels: Vec<f64> = row.iter().map(|texel| f64::from(texel[channel])).collect();
                 let sigma = sigma * f64::from(channels[channel]);
                 if sigma < RESOLVED { 0.0 } else { errors(&texels, sigma)[1] }
             };
-            of(0).max(of(1)).max(of(2))
+            error_of(0).max(error_of(1)).max(error_of(2))
         })
         .reduce(|| 0.0, larger)
 }
@@ -238,7 +240,8 @@ fn cylinder(gpu: &Gpu, axis: usize, taps: &Taps) -> Vec<[f32; 4]> {
     let chart = Chart { low: [0, 0], high: size };
     let texels = diffuse(gpu, size, [axis == 0, axis == 1], (&irradiance, &stretch), taps, &[chart]);
     // One line around the cylinder, at half its height.
-    let line = |at: u32| if axis == 0 { texels[(4 * AROUND + at) as usize] } else { texels[(8 * at + 4) as usize] };
+    let line =
+        |place: u32| if axis == 0 { texels[(4 * AROUND + place) as usize] } else { texels[(8 * place + 4) as usize] };
     (0..AROUND).map(line).collect()
 }
 
@@ -247,7 +250,7 @@ fn a_cylinder_gets_the_exact_convolution() {
     let gpu = lapidary_testing::gpu();
     let channels = Vec3::new(1.0, 0.5, 0.25);
     let pairs = mirror::pairs(channels);
-    let (mut shown, mut own, mut fewer) = (0.0f64, 0.0f64, 0.0f64);
+    let (mut shown, mut at_texels, mut fewer) = (0.0f64, 0.0f64, 0.0f64);
     let sigmas =
         [0.005, 0.0075, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98, 1.0];
     for sigma in sigmas {
@@ -255,20 +258,21 @@ fn a_cylinder_gets_the_exact_convolution() {
             let sigma0 = sigma as f32 * channels;
             let [line, short] = [pairs, pairs - 1].map(|pairs| cylinder(gpu, axis, &Taps::with_pairs(sigma0, pairs)));
             for channel in 0..3 {
-                let of = |line: &[[f32; 4]]| line.iter().map(|texel| f64::from(texel[channel])).collect::<Vec<f64>>();
+                let values =
+                    |line: &[[f32; 4]]| line.iter().map(|texel| f64::from(texel[channel])).collect::<Vec<f64>>();
                 let width = sigma * f64::from(channels[channel]);
-                let [at_middles, anywhere] = errors(&of(&line), width);
+                let [at_middles, anywhere] = errors(&values(&line), width);
                 println!("sigma {width:.5} along {axis}: {at_middles:.2e} at texels, {anywhere:.2e} between them");
-                own = larger(own, at_middles);
+                at_texels = larger(at_texels, at_middles);
                 if width >= RESOLVED {
                     shown = larger(shown, anywhere);
-                    fewer = larger(fewer, errors(&of(&short), width)[1]);
+                    fewer = larger(fewer, errors(&values(&short), width)[1]);
                 }
             }
         }
     }
-    println!("{pairs} pairs: {own:.2e} at texels, {shown:.2e} as looked up; {fewer:.2e} with one pair fewer");
-    assert!(own < BOUND && shown < BOUND, "{own:e} {shown:e}");
+    println!("{pairs} pairs: {at_texels:.2e} at texels, {shown:.2e} as looked up; {fewer:.2e} with one pair fewer");
+    assert!(at_texels < BOUND && shown < BOUND, "{at_texels:e} {shown:e}");
     assert!(fewer > BOUND, "{fewer:e} with one pair fewer");
 }
 
@@ -366,7 +370,7 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
         let taps = Taps::new(sigma0);
         let charts = PATCHES.each_ref().map(|patch| patch.chart);
         let texels = diffuse(lapidary_testing::gpu(), size, [false; 2], (&irradiance, &stretch), &taps, &charts);
-        let at = |column: u32, row: u32| texels[(row * 128 + column) as usize];
+        let texel = |column: u32, row: u32| texels[(row * 128 + column) as usize];
         let (mut covered, mut gutter) = (0, 0);
         for row in 0..128 {
             for column in 0..128 {
@@ -374,19 +378,19 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
                     covered += 1;
                     let light = patch.light.map(|value| Half::from_f32(value).to_f32());
                     let [r, g, b] = light;
-                    assert_eq!(at(column, row), [r, g, b, 1.0], "{sigma0}: texel {column}, {row}");
+                    assert_eq!(texel(column, row), [r, g, b, 1.0], "{sigma0}: texel {column}, {row}");
                     // All texels that a bilinear lookup may read here are filled: between close
                     // charts, with the value of one of them or with a mean.
                     let near = (-1..=1i32).flat_map(|y| (-1..=1i32).map(move |x| (x, y)));
                     for (x, y) in near {
-                        let next = at(column.wrapping_add_signed(x), row.wrapping_add_signed(y));
+                        let next = texel(column.wrapping_add_signed(x), row.wrapping_add_signed(y));
                         gutter += u32::from(next[3] == 1.0 && next != [r, g, b, 1.0]);
                         assert_eq!(next[3], 1.0, "texel {column}, {row} beside {x}, {y}");
                     }
                 }
             }
         }
-        assert!(covered > 5000 && at(2, 1) == [0.0; 4], "{covered}");
+        assert!(covered > 5000 && texel(2, 1) == [0.0; 4], "{covered}");
         assert_eq!(gutter, 0, "charts are four texels apart");
         if sigma0.x > 0.1 {
             // One rectangle around all charts: the wide Gaussian reaches across the gap.
@@ -424,12 +428,12 @@ fn a_texture_that_repeats_has_no_seam() {
     // The seam lies where the texture begins. In the turned texture it lies elsewhere on the
     // cylinder, so a visible seam makes the two differ. Coordinates round differently there, which
     // may round a half float the other way.
-    let apart = |repeats| {
+    let difference = |repeats| {
         let [one, other] = [turned(0, repeats), turned(turn, repeats)];
         let pairs = (0..AROUND).map(|column| (one[((column + turn) % AROUND) as usize], other[column as usize]));
         pairs.map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, larger)
     };
-    let [repeated, bounded] = [true, false].map(apart);
+    let [repeated, bounded] = [true, false].map(difference);
     println!("a seam of {repeated:.1e} where it repeats, of {bounded:.3} where it does not");
     assert!(repeated <= 2.0f32.powi(-11) && bounded > 0.05, "{repeated} {bounded}");
 }

@@ -51,11 +51,11 @@ fn draw(scene: &Scene, rung: &str) -> Picture {
 /// Returns each pixel's place on the square, away from its edges, and its radiance.
 fn pixels(picture: &Picture) -> Vec<(Vec2, Vec3)> {
     let place = |pixel: u32| 1.1 * ((pixel as f32 + 0.5) / (0.5 * SIDE as f32) - 1.0);
-    let at = |(index, linear): (usize, &[f32; 4])| {
+    let located = |(index, linear): (usize, &[f32; 4])| {
         let index = index as u32;
         (Vec2::new(place(index % SIDE), -place(index / SIDE)), Vec3::from_slice(&linear[..3]))
     };
-    picture.linear.iter().enumerate().map(at).filter(|(place, _)| place.abs().max_element() < 0.97).collect()
+    picture.linear.iter().enumerate().map(located).filter(|(place, _)| place.abs().max_element() < 0.97).collect()
 }
 
 fn matte() -> Material {
@@ -203,9 +203,9 @@ fn a_thickness_scales_how_far_light_spreads() {
         let most = if rung.starts_with("table") { 2e-3 } else { 2e-5 };
         assert_eq!(with(Some(image(255, 255))), plain, "{rung}");
         let found = furthest(&with(Some(image(128, 128))), &half);
-        let apart = furthest(&half, &plain).min(furthest(&half, &thin));
-        println!("{rung}: {found:.1e} off where the share makes {apart:.3}");
-        assert!(found < most && apart > 0.02, "{rung}: {found} {apart}");
+        let difference = furthest(&half, &plain).min(furthest(&half, &thin));
+        println!("{rung}: {found:.1e} off where the share makes {difference:.3}");
+        assert!(found < most && difference > 0.02, "{rung}: {found} {difference}");
         // Around the ball u runs once: a pixel is of one share or of the other, but for a texel's width between them.
         let both = with(Some(image(128, 32)));
         let like = |other: &[[f32; 4]]| {
@@ -247,7 +247,7 @@ fn a_transmission_is_the_share_that_enters() {
         };
         let (whole, lambert) = (with(1.0, None), draw(&ball, "lambert").linear);
         assert_eq!(with(1.0, Some(image(255))), whole, "{rung}");
-        let apart = furthest(&whole, &lambert);
+        let difference = furthest(&whole, &lambert);
         let mixed = |share: f32| -> Vec<[f32; 4]> {
             let mix = |(a, b): (&[f32; 4], &[f32; 4])| std::array::from_fn(|k| share * a[k] + (1.0 - share) * b[k]);
             whole.iter().zip(&lambert).map(mix).collect()
@@ -255,9 +255,9 @@ fn a_transmission_is_the_share_that_enters() {
         for (factor, code) in [(0.25, 255u8), (1.0, 64), (0.5, 128), (1.0, 0)] {
             let share = factor * f32::from(code) / 255.0;
             let found = furthest(&with(factor, Some(image(code))), &mixed(share));
-            println!("{rung}, {factor} of {code}: {found:.1e} off where the share makes {apart:.3}");
+            println!("{rung}, {factor} of {code}: {found:.1e} off where the share makes {difference:.3}");
             // The picture's half floats.
-            assert!(found < 1e-3 && apart > 0.05, "{rung} {factor} {code}: {found} {apart}");
+            assert!(found < 1e-3 && difference > 0.05, "{rung} {factor} {code}: {found} {difference}");
         }
         assert!(furthest(&with(0.25, None), &mixed(0.25)) < 1e-3, "{rung}");
     }
@@ -289,14 +289,14 @@ fn a_small_picture_of_a_large_image_is_its_mean() {
 #[test]
 fn an_image_is_uploaded_once() {
     let texels = patches(Encoding::Linear).texels;
-    let of = |encoding: Encoding| Some(Texture::new(Arc::clone(&texels), encoding));
+    let texture_of = |encoding: Encoding| Some(Texture::new(Arc::clone(&texels), encoding));
     let mut scene = Scene::named("skin").expect("built in");
     scene.objects.truncate(1);
     let material = &mut scene.objects[0].material;
     (material.thickness, material.diffuse_transmission) = (20.0, 1.0);
-    material.thickness_texture = of(Encoding::Linear);
-    material.diffuse_transmission_texture = of(Encoding::Linear);
-    material.base_color_texture = of(Encoding::Srgb);
+    material.thickness_texture = texture_of(Encoding::Linear);
+    material.diffuse_transmission_texture = texture_of(Encoding::Linear);
+    material.base_color_texture = texture_of(Encoding::Srgb);
     let mut other = scene.objects[0].clone();
     other.name = "other".to_owned();
     scene.objects.push(other);

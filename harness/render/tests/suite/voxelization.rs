@@ -458,12 +458,12 @@ fn positions_that_are_no_numbers_stay_within_the_buffers() {
 fn bodies_that_meet() {
     let grid = centred(32);
     let ball = sphere(6.2, 32);
-    for apart in [7.0, 4.0, 1.0] {
-        let (left, right) = (moved(&ball, Vec3::X * -apart), moved(&ball, Vec3::new(apart, 0.3, 0.1)));
+    for offset in [7.0, 4.0, 1.0] {
+        let (left, right) = (moved(&ball, Vec3::X * -offset), moved(&ball, Vec3::new(offset, 0.3, 0.1)));
         let both = solid(&joined(&[&left, &right]), grid);
         let (left, right) = (solid(&left, grid), solid(&right, grid));
         let sum = left.matter.iter().zip(&right.matter).map(|(left, right)| left ^ right);
-        assert!(both.matter.iter().copied().eq(sum), "{apart}");
+        assert!(both.matter.iter().copied().eq(sum), "{offset}");
     }
     for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
         let (low, high) = (Vec3::splat(-3.5), Vec3::splat(4.5));

@@ -68,7 +68,7 @@ const COLORS: [Vec3; 7] = [
 
 /// Returns the colour at a part of the way round.
 fn color(part: f32) -> Vec3 {
-    let at = part.rem_euclid(1.0) * COLORS.len() as f32;
-    let index = at as usize % COLORS.len();
-    COLORS[index].lerp(COLORS[(index + 1) % COLORS.len()], at.fract())
+    let position = part.rem_euclid(1.0) * COLORS.len() as f32;
+    let index = position as usize % COLORS.len();
+    COLORS[index].lerp(COLORS[(index + 1) % COLORS.len()], position.fract())
 }

@@ -31,8 +31,8 @@ fn a_twist_keeps_the_volume_and_turns_by_height() {
 fn normals_of_a_twisted_body_are_its_own() {
     let (ring, axis) = (ring(), dvec2(2.0, -1.0));
     let twisted = twisted(&ring, axis, 0.0, 0.05);
-    let own = shared_normals(&twisted.positions, &twisted.indices, Averaging::Angle);
-    let off = |normals: &[glam::Vec3]| normals.iter().zip(&own).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
+    let expected = shared_normals(&twisted.positions, &twisted.indices, Averaging::Angle);
+    let off = |normals: &[glam::Vec3]| normals.iter().zip(&expected).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
     let turned: Vec<_> = ring
         .normals
         .iter()
@@ -48,11 +48,15 @@ fn normals_of_a_twisted_body_are_its_own() {
 #[test]
 fn a_twist_comes_and_goes() {
     let ring = ring();
-    let at = |time: f64| twisting(&ring, dvec2(0.0, 0.0), [-20.0, 20.0], time);
-    let apart =
+    let twist = |time: f64| twisting(&ring, dvec2(0.0, 0.0), [-20.0, 20.0], time);
+    let deviation =
         |a: &Mesh, b: &Mesh| a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
-    assert!(apart(&at(0.0), &ring) < 1e-5 && apart(&at(0.5), &ring) < 1e-4 && apart(&at(1.0), &ring) < 1e-4);
-    assert!(apart(&at(0.25), &ring) > 10.0 && apart(&at(0.25), &at(0.75)) > 10.0);
+    assert!(
+        deviation(&twist(0.0), &ring) < 1e-5
+            && deviation(&twist(0.5), &ring) < 1e-4
+            && deviation(&twist(1.0), &ring) < 1e-4
+    );
+    assert!(deviation(&twist(0.25), &ring) > 10.0 && deviation(&twist(0.25), &twist(0.75)) > 10.0);
     // A quarter turn at the top.
     let mut top =
         Mesh { positions: vec![glam::Vec3::new(3.0, 20.0, 0.0)], normals: vec![glam::Vec3::X], ..Mesh::default() };
@@ -83,8 +87,8 @@ fn two_drops_become_one() {
     for step in 0..=20 {
         let mesh = merging(f64::from(step) / 20.0);
         assert!(MeshDiagnosis::of(&mesh).is_solid(), "{step}: {:?}", MeshDiagnosis::of(&mesh));
-        let own = shared_normals(&mesh.positions, &mesh.indices, Averaging::Angle);
-        let off = mesh.normals.iter().zip(&own).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
+        let expected = shared_normals(&mesh.positions, &mesh.indices, Averaging::Angle);
+        let off = mesh.normals.iter().zip(&expected).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
         // A neck that has just formed bends within a triangle.
         assert!(off < 0.2 && mesh.normals.iter().all(|normal| normal.is_normalized()), "{step}: {off}");
         counts.push(bodies(&mesh));

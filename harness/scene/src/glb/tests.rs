@@ -4,9 +4,9 @@ use lapidary_veins::VeinsPattern;
 
 mod textures;
 
-fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {
-    let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-    (&bytes[at + 4..at + 8], &bytes[at + 8..at + 8 + length])
+fn chunk(bytes: &[u8], start: usize) -> (&[u8], &[u8]) {
+    let length = u32::from_le_bytes(bytes[start..start + 4].try_into().unwrap()) as usize;
+    (&bytes[start + 4..start + 8], &bytes[start + 8..start + 8 + length])
 }
 
 #[test]

@@ -84,17 +84,17 @@ fn place<T: Clone>(list: &mut Vec<T>, wanted: &T, is_wanted: impl Fn(&T) -> bool
 }
 
 /// Members of a transform that differ from glTF's defaults; `None` if there are none.
-fn transform(of: &TextureTransform) -> Option<Value> {
+fn transform(texture_transform: &TextureTransform) -> Option<Value> {
     let identity = TextureTransform::IDENTITY;
     let mut members = json!({});
-    if of.offset != identity.offset {
-        members["offset"] = json!(of.offset.to_array());
+    if texture_transform.offset != identity.offset {
+        members["offset"] = json!(texture_transform.offset.to_array());
     }
-    if of.rotation != identity.rotation {
-        members["rotation"] = json!(of.rotation);
+    if texture_transform.rotation != identity.rotation {
+        members["rotation"] = json!(texture_transform.rotation);
     }
-    if of.scale != identity.scale {
-        members["scale"] = json!(of.scale.to_array());
+    if texture_transform.scale != identity.scale {
+        members["scale"] = json!(texture_transform.scale.to_array());
     }
     (members != json!({})).then_some(members)
 }

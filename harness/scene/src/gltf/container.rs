@@ -45,21 +45,21 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
     Ok(Container { json, binary })
 }
 
-/// Returns the kind and the data of the chunk at `at`, and the start of the next one.
-fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), GltfError> {
-    let length = word(bytes, at, "a chunk")? as usize;
-    let start = at + 8;
-    let kind = bytes.get(at + 4..start);
+/// Returns the kind and the data of the chunk at `offset`, and the start of the next one.
+fn chunk(bytes: &[u8], offset: usize) -> Result<(&[u8], &[u8], usize), GltfError> {
+    let length = word(bytes, offset, "a chunk")? as usize;
+    let start = offset + 8;
+    let kind = bytes.get(offset + 4..start);
     let end = start.checked_add(length);
     let data = end.and_then(|end| bytes.get(start..end));
     match (kind, data) {
         (Some(kind), Some(data)) => Ok((kind, data, start + length)),
-        _ => Err(damaged(format!("the chunk at byte {at} states {length} bytes but the file ends before"))),
+        _ => Err(damaged(format!("the chunk at byte {offset} states {length} bytes but the file ends before"))),
     }
 }
 
-fn word(bytes: &[u8], at: usize, part: &str) -> Result<u32, GltfError> {
-    let word = bytes.get(at..).and_then(|tail| tail.first_chunk());
+fn word(bytes: &[u8], offset: usize, part: &str) -> Result<u32, GltfError> {
+    let word = bytes.get(offset..).and_then(|tail| tail.first_chunk());
     let word = word.ok_or_else(|| damaged(format!("it ends at byte {} inside {part}", bytes.len())))?;
     Ok(u32::from_le_bytes(*word))
 }

@@ -64,7 +64,7 @@ pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<T
 
 /// Width and height in a PNG's header, which comes first.
 fn png_size(bytes: &[u8]) -> Option<[u32; 2]> {
-    let number = |at: usize| bytes.get(at..at + 4)?.try_into().ok().map(u32::from_be_bytes);
+    let number = |offset: usize| bytes.get(offset..offset + 4)?.try_into().ok().map(u32::from_be_bytes);
     (bytes.get(12..16)? == b"IHDR").then_some([number(16)?, number(20)?])
 }
 

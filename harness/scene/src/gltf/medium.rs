@@ -24,7 +24,7 @@ struct Veins {
 
 /// The medium of `extras.lapidary`. Scattering and absorption require each other.
 pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
-    let of = |scattering: Vec3, absorption: Vec3| -> Result<Medium, String> {
+    let checked = |scattering: Vec3, absorption: Vec3| -> Result<Medium, String> {
         let mut medium = Medium::isotropic(scattering, absorption);
         if let Some(json) = extras.anisotropy {
             medium.anisotropy = anisotropy(json)?;
@@ -47,7 +47,7 @@ pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
         }
         (None, None) => Ok(None),
         (Some(scattering), Some(absorption)) => {
-            of(lengths("scattering", scattering)?, lengths("absorption", absorption)?).map(Some)
+            checked(lengths("scattering", scattering)?, lengths("absorption", absorption)?).map(Some)
         }
         (Some(_), None) => Err("its extras.lapidary has scattering but no absorption; give both or neither".to_owned()),
         (None, Some(_)) => Err("its extras.lapidary has absorption but no scattering; give both or neither".to_owned()),

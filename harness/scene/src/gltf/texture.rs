@@ -206,13 +206,13 @@ fn file_or_base64(uri: &str, base: Option<&Path>, image: &str) -> Result<Vec<u8>
 }
 
 fn wrap(sampler: &Sampler) -> Result<[Wrap; 2], String> {
-    let of = |name: &str, mode: Checked<WrappingMode>| match mode {
+    let wrap_of = |name: &str, mode: Checked<WrappingMode>| match mode {
         Checked::Valid(WrappingMode::Repeat) => Ok(Wrap::Repeat),
         Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrap::MirroredRepeat),
         Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrap::ClampToEdge),
         Checked::Invalid => Err(format!("its {name} is not one of glTF's, 10497, 33071 and 33648")),
     };
-    Ok([of("wrapS", sampler.wrap_s)?, of("wrapT", sampler.wrap_t)?])
+    Ok([wrap_of("wrapS", sampler.wrap_s)?, wrap_of("wrapT", sampler.wrap_t)?])
 }
 
 fn transform(extension: Extension<'_>) -> Result<TextureTransform, String> {

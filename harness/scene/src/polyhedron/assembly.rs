@@ -100,9 +100,9 @@ fn corners_at(planes: &[Plane], place: DVec3, tolerance: f64) -> Vec<Corner> {
     let stride = near.len().div_ceil(MOST_AT_A_CORNER).max(1);
     let tried: Vec<usize> = near.iter().copied().step_by(stride).collect();
     let mut found: Vec<Corner> = Vec::new();
-    for (at, &i) in tried.iter().enumerate() {
-        for (at, &j) in tried.iter().enumerate().skip(at + 1) {
-            for &k in &tried[at + 1..] {
+    for (first, &i) in tried.iter().enumerate() {
+        for (second, &j) in tried.iter().enumerate().skip(first + 1) {
+            for &k in &tried[second + 1..] {
                 let [a, b, c] = [i, j, k].map(|index| &planes[index]);
                 let rows = DMat3::from_cols(a.normal, b.normal, c.normal).transpose();
                 let volume = rows.determinant().abs();

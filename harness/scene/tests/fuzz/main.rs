@@ -149,8 +149,8 @@ fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
             let start = from.index(bytes.len());
             let end = bytes.len().min(start + usize::from(*length));
             let copy = bytes[start..end].to_vec();
-            let at = to.index(bytes.len());
-            bytes.splice(at..at, copy);
+            let target = to.index(bytes.len());
+            bytes.splice(target..target, copy);
         }
         Edit::Digit(place, digit) => {
             let (json, _) = parts(bytes);
@@ -182,8 +182,8 @@ type Range = std::ops::Range<usize>;
 
 /// Returns the range of the JSON, and the range of the binary chunk if the container is sound.
 fn parts(bytes: &[u8]) -> (Range, Option<Range>) {
-    let word = |at: usize| {
-        let word = bytes.get(at..)?.first_chunk()?;
+    let word = |offset: usize| {
+        let word = bytes.get(offset..)?.first_chunk()?;
         Some(u32::from_le_bytes(*word) as usize)
     };
     let sound = || {
@@ -199,14 +199,14 @@ fn parts(bytes: &[u8]) -> (Range, Option<Range>) {
 fn numbers(json: &[u8]) -> Vec<Range> {
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
     let mut found = Vec::new();
-    let mut at = 0;
-    while at < json.len() {
-        let length = json[at..].iter().take_while(|byte| is_part(byte)).count();
-        let after = at.checked_sub(1).is_some_and(|before| b":[, \n".contains(&json[before]));
-        if length > 0 && after && json[at..at + length].iter().any(u8::is_ascii_digit) {
-            found.push(at..at + length);
+    let mut position = 0;
+    while position < json.len() {
+        let length = json[position..].iter().take_while(|byte| is_part(byte)).count();
+        let after = position.checked_sub(1).is_some_and(|before| b":[, \n".contains(&json[before]));
+        if length > 0 && after && json[position..position + length].iter().any(u8::is_ascii_digit) {
+            found.push(position..position + length);
         }
-        at += length.max(1);
+        position += length.max(1);
     }
     found
 }

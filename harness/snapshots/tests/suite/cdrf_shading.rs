@@ -323,14 +323,14 @@ fn what_is_off_leaves_no_trace() {
 /// Bodies of other materials do not change the picture of a body.
 #[test]
 fn a_polished_and_a_rough_body_do_not_mix() {
-    let of = |roughness: f32, place: f64| {
+    let body = |roughness: f32, place: f64| {
         let mut object = ball(10.0, Vec3::splat(2.0)).objects.remove(0);
         object.material.roughness = roughness;
         object.mesh = object.mesh.placed(glam::DQuat::IDENTITY, DVec3::new(place, 0.0, 0.0));
         object
     };
     let mut scene = ball(10.0, Vec3::ONE);
-    scene.objects = vec![of(0.0, -12.0), of(0.4, 12.0)];
+    scene.objects = vec![body(0.0, -12.0), body(0.4, 12.0)];
     let scene = scene.seen_from(90.0, 0.0);
     let reflecting = Settings { without: Effects::of(&[Effect::Environment]), ..settings("accurate") };
     let both = draw(&scene, &reflecting).linear;
@@ -353,11 +353,11 @@ fn near_forms_are_as_near_as_their_errors() {
     let scene = ball(10.0, Vec3::new(3.4, 2.5, 1.0));
     let [cheap, accurate, quadrature] =
         ["cheap", "accurate", "quadrature"].map(|rung| draw(&scene, &settings(rung)).linear);
-    let apart = |other: &[[f32; 4]]| {
+    let difference = |other: &[[f32; 4]]| {
         let pairs = other.iter().flatten().zip(accurate.iter().flatten());
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, larger)
     };
-    let (cheap, quadrature) = (apart(&cheap), apart(&quadrature));
+    let (cheap, quadrature) = (difference(&cheap), difference(&quadrature));
     println!("from the accurate form: cheap {cheap:.1e}, quadrature {quadrature:.1e}");
     // The cheap form may be off by 1.5e-5 times the light of both lights after the albedo, the
     // accurate form by a hundredth of that.
@@ -566,13 +566,13 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
 #[test]
 fn a_highlight_of_two_lobes_is_the_mean_of_both() {
     let mut scene = ball(10.0, Vec3::splat(2.0));
-    let of = |roughness: f32, second: Option<Lobe>, scene: &mut Scene| {
+    let picture_of = |roughness: f32, second: Option<Lobe>, scene: &mut Scene| {
         scene.objects[0].material.roughness = roughness;
         scene.objects[0].material.second_lobe = second;
         draw(scene, &Settings { without: Effects::of(&[Effect::Environment]), ..settings("accurate") }).linear
     };
-    let [wide, narrow] = [0.5, 0.2].map(|roughness| of(roughness, None, &mut scene));
-    let both = of(0.5, Some(Lobe { roughness: 0.2, weight: 0.3 }), &mut scene);
+    let [wide, narrow] = [0.5, 0.2].map(|roughness| picture_of(roughness, None, &mut scene));
+    let both = picture_of(0.5, Some(Lobe { roughness: 0.2, weight: 0.3 }), &mut scene);
     let mut most = 0.0f32;
     for ((wide, narrow), both) in wide.iter().zip(&narrow).zip(&both) {
         for channel in 0..3 {

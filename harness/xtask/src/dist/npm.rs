@@ -68,11 +68,17 @@ fn recipe_module(Whole { source, ir, glsl_es, .. }: &Whole) -> [String; 2] {
     let overrides: Vec<&str> = ir.overrides.iter().filter_map(|(_, it)| it.name.as_deref()).collect();
     let row = |bound: Bound| {
         let ty = &ir.types[bound.ty];
-        let of = match ty.inner {
+        let structure = match ty.inner {
             TypeInner::Array { base, .. } => ir.types[base].name.as_deref(),
             _ => ty.name.as_deref(),
         };
-        json!({ "group": bound.group, "binding": bound.binding, "name": bound.name, "kind": bound.kind.name(), "struct": of })
+        json!({
+            "group": bound.group,
+            "binding": bound.binding,
+            "name": bound.name,
+            "kind": bound.kind.name(),
+            "struct": structure,
+        })
     };
     let bindings: Vec<Value> = bindings(ir).into_iter().map(row).collect();
     let used: Vec<&str> = bindings.iter().filter_map(|row| row["struct"].as_str()).collect();

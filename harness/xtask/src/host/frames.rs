@@ -124,7 +124,7 @@ pub(super) fn all(described: &[Description]) -> Result<(Vec<Use>, Vec<Listed>), 
 
 /// Numbers of each object, by name.
 fn objects(scene: &Scene, plan: &Plan) -> HashMap<String, Quantities> {
-    let of = |object: &Object, rung: Rung| {
+    let quantities_of = |object: &Object, rung: Rung| {
         let shape = object.shape();
         let n = match rung {
             Rung::OpticalPath(paths) => paths.cells,
@@ -140,7 +140,7 @@ fn objects(scene: &Scene, plan: &Plan) -> HashMap<String, Quantities> {
         }
     };
     let planned = scene.objects.iter().zip(&plan.objects);
-    planned.map(|(object, planned)| (planned.object.clone(), of(object, planned.decisions.rung))).collect()
+    planned.map(|(object, planned)| (planned.object.clone(), quantities_of(object, planned.decisions.rung))).collect()
 }
 
 /// Adds a step that clears or copies, to one of its kind if that came just before.
@@ -217,7 +217,7 @@ impl Reader<'_> {
     /// Returns a buffer's name without its object's.
     fn own_name(&self, buffer: lapidary_render::frame::Buffer) -> &str {
         let name = self.frame.name(buffer);
-        name.split_once('/').map_or(name, |(_, own)| own)
+        name.split_once('/').map_or(name, |(_, rest)| rest)
     }
 
     fn fault(&self, pipeline: PipelineId, what: &str, message: String) -> HostError {

@@ -30,9 +30,9 @@ fn described() -> Result<Vec<recipe::Description>, HostError> {
 pub fn pages() -> Result<Vec<(String, String)>, HostError> {
     let all = described()?;
     let (uses, frames) = frames::all(&all)?;
-    let own = |name: &str| uses.iter().filter(|of| of.recipe == name).collect::<Vec<_>>();
-    let rows = all.iter().map(|described| page::row(described, &own(described.name))).collect();
-    let pages = all.iter().map(|of| (format!("{}.md", of.name), page::of(of, &own(of.name))));
+    let uses_of = |name: &str| uses.iter().filter(|used| used.recipe == name).collect::<Vec<_>>();
+    let rows = all.iter().map(|described| page::row(described, &uses_of(described.name))).collect();
+    let pages = all.iter().map(|recipe| (format!("{}.md", recipe.name), page::of(recipe, &uses_of(recipe.name))));
     Ok(std::iter::once(("README.md".to_owned(), page::index(rows, &frames))).chain(pages).collect())
 }
 
@@ -46,12 +46,13 @@ mod tests {
         let all = described().unwrap_or_else(|error| panic!("{error}"));
         for (names, start, _) in sizes::SIZES {
             for name in *names {
-                let mut rows = all.iter().filter(|of| of.name.starts_with(start)).flat_map(|of| &of.bindings);
+                let mut rows =
+                    all.iter().filter(|recipe| recipe.name.starts_with(start)).flat_map(|recipe| &recipe.bindings);
                 assert!(rows.any(|row| row.name == *name), "`{name}` of `{start}`");
             }
         }
         for (name, _) in sizes::WORKGROUPS {
-            assert!(all.iter().flat_map(|of| &of.entries).any(|entry| entry.name == *name), "`{name}`");
+            assert!(all.iter().flat_map(|recipe| &recipe.entries).any(|entry| entry.name == *name), "`{name}`");
         }
     }
 
@@ -59,7 +60,8 @@ mod tests {
     #[test]
     fn a_wrong_formula_is_found() {
         let mut all = described().unwrap_or_else(|error| panic!("{error}"));
-        let row = all.iter_mut().flat_map(|of| &mut of.bindings).find(|row| row.name == "positions").expect("a row");
+        let row =
+            all.iter_mut().flat_map(|recipe| &mut recipe.bindings).find(|row| row.name == "positions").expect("a row");
         row.name = "indices".to_owned();
         let error = frames::all(&all).map(|_| ()).expect_err("positions are no indices").to_string();
         assert!(error.contains("12 × triangles"), "{error}");

@@ -106,12 +106,12 @@ pub(super) fn of(described: &Description, uses: &[&Use]) -> String {
     if !described.structs.is_empty() {
         page.push_str("## Layouts\n\n");
     }
-    for of in &described.structs {
-        let _ = writeln!(page, "### {}, {} bytes\n", of.name, of.bytes);
+    for structure in &described.structs {
+        let _ = writeln!(page, "### {}, {} bytes\n", structure.name, structure.bytes);
         table(
             &mut page,
             &["offset", "member", "type", "what it is"],
-            of.members.iter().map(|member| {
+            structure.members.iter().map(|member| {
                 vec![
                     member.offset.to_string(),
                     format!("`{}`", member.name),
@@ -127,8 +127,8 @@ pub(super) fn of(described: &Description, uses: &[&Use]) -> String {
         table(
             &mut page,
             &["override", "type", "default", "what it does"],
-            described.overrides.iter().map(|of| {
-                vec![format!("`{}`", of.name), of.ty.clone(), format!("`{}`", of.default), of.comment.clone()]
+            described.overrides.iter().map(|item| {
+                vec![format!("`{}`", item.name), item.ty.clone(), format!("`{}`", item.default), item.comment.clone()]
             }),
         );
     }
@@ -141,9 +141,15 @@ pub(super) fn of(described: &Description, uses: &[&Use]) -> String {
     table(
         &mut page,
         &["pass", "entry points", "vertices or workgroups", "state", "`./cook frame`"],
-        uses.iter().map(|of| {
-            let entries: Vec<String> = of.entries.iter().map(|entry| format!("`{entry}`")).collect();
-            vec![of.pass.clone(), entries.join(", "), of.count.clone(), of.state.clone(), format!("`{}`", of.example)]
+        uses.iter().map(|used| {
+            let entries: Vec<String> = used.entries.iter().map(|entry| format!("`{entry}`")).collect();
+            vec![
+                used.pass.clone(),
+                entries.join(", "),
+                used.count.clone(),
+                used.state.clone(),
+                format!("`{}`", used.example),
+            ]
         }),
     );
     page.trim_end().to_owned() + "\n"
@@ -151,7 +157,7 @@ pub(super) fn of(described: &Description, uses: &[&Use]) -> String {
 
 /// Returns a recipe's row in the table of all.
 pub(super) fn row(described: &Description, uses: &[&Use]) -> Vec<String> {
-    let mut passes: Vec<&str> = uses.iter().map(|of| of.pass.as_str()).collect();
+    let mut passes: Vec<&str> = uses.iter().map(|used| used.pass.as_str()).collect();
     passes.dedup();
     vec![format!("[{0}]({0}.md)", described.name), sentence(&described.purpose), passes.join(", ")]
 }

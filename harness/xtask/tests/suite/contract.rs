@@ -73,8 +73,8 @@ fn every_recipe_compiles_with_the_modules_that_it_requires() {
         }
         let (ir, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
         assert!(!ir.entry_points.is_empty(), "{}", recipe.name);
-        let own = recipe.own_text().concat();
-        let uses_none = dispatch::parse(&own, recipe.name).is_ok();
+        let own_text = recipe.own_text().concat();
+        let uses_none = dispatch::parse(&own_text, recipe.name).is_ok();
         assert_eq!(uses_none, recipe.requires().is_empty(), "{} uses no module's function", recipe.name);
     }
 }
@@ -339,8 +339,9 @@ fn every_function_of_a_recipe_can_be_copied_alone() {
     for recipe in RECIPES {
         let source = recipe.compose();
         let prefixes: Vec<String> = recipe.requires().into_iter().map(|module| format!("{module}_")).collect();
-        let own = functions(&source).into_iter().filter(|name| !prefixes.iter().any(|prefix| name.starts_with(prefix)));
-        for name in own {
+        let own_functions =
+            functions(&source).into_iter().filter(|name| !prefixes.iter().any(|prefix| name.starts_with(prefix)));
+        for name in own_functions {
             let text = of_functions(&source, &[name]).expect("a function of the recipe");
             let (ir, info) =
                 dispatch::parse(&text, recipe.name).unwrap_or_else(|error| panic!("{}::{name}: {error}", recipe.name));
@@ -382,8 +383,8 @@ fn recipes_named_in_comments_exist() {
     for text in texts {
         let comments: Vec<&str> = text.lines().filter_map(|line| Some(line.split_once("//")?.1.trim())).collect();
         let comments = comments.join(" ");
-        for (at, word) in comments.match_indices("recipe ").chain(comments.match_indices("recipes ")) {
-            for name in comments[at + word.len()..].split([' ', ',']).filter(|name| !["", "and"].contains(name)) {
+        for (start, word) in comments.match_indices("recipe ").chain(comments.match_indices("recipes ")) {
+            for name in comments[start + word.len()..].split([' ', ',']).filter(|name| !["", "and"].contains(name)) {
                 let name = name.trim_matches(['`', '.', ':', ';', ')', '\'']);
                 let is_name = name.contains('_') || lapidary_wgsl::module(name).is_some();
                 if !is_name {

@@ -27,9 +27,9 @@ fn every_defect_can_be_planted() {
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(all.len() >= LEAST, "{} defects", all.len());
-    let apart: BTreeSet<(&str, &str, &str)> =
+    let distinct: BTreeSet<(&str, &str, &str)> =
         all.iter().map(|defect| (&*defect.file, &*defect.old, &*defect.new)).collect();
-    assert_eq!(apart.len(), all.len(), "a defect stands in the list twice");
+    assert_eq!(distinct.len(), all.len(), "a defect stands in the list twice");
 }
 
 #[test]

@@ -216,14 +216,14 @@ static SHOWN: LazyLock<Vec<Shown>> = LazyLock::new(|| {
         points.collect::<Vec<_>>()
     });
     let points: Vec<_> = points.collect();
-    let of = |(name, source, point): &(&'static str, String, naga::EntryPoint), language: Language| Shown {
+    let show = |(name, source, point): &(&'static str, String, naga::EntryPoint), language: Language| Shown {
         place: format!("{name}::{} in {language}", point.name),
         language,
         stage: point.stage,
         entry: Box::leak(point.name.clone().into_boxed_str()),
         text: shader(source, name, language, Some(&point.name)),
     };
-    points.par_iter().flat_map_iter(|point| Language::ALL.into_iter().map(|language| of(point, language))).collect()
+    points.par_iter().flat_map_iter(|point| Language::ALL.into_iter().map(|language| show(point, language))).collect()
 });
 
 #[test]
@@ -231,7 +231,7 @@ fn recipes_compile_in_every_language_that_can_say_them() {
     let has_tools = has_tools("the recipes in other languages");
     let folder = folder();
     let shown = &*SHOWN;
-    let fault = |(at, shown): (usize, &Shown)| match &shown.text {
+    let fault = |(index, shown): (usize, &Shown)| match &shown.text {
         // GLSL ES 3.00 has neither; nothing else is missing anywhere.
         Err(TranslateError::Lacks { why, .. })
             if shown.language == Language::GlslEs
@@ -246,7 +246,7 @@ fn recipes_compile_in_every_language_that_can_say_them() {
                 let how = As::Shader(shown.stage, shown.entry);
                 let is_compiled = has_tools && COMPILED.contains(&shown.language);
                 is_compiled.then(|| {
-                    compiled(text, shown.language, how, folder.path(), &format!("{}{at}", shown.entry)).err()
+                    compiled(text, shown.language, how, folder.path(), &format!("{}{index}", shown.entry)).err()
                 })?
             };
             let fault = made_up.map(|word| format!("`{word}`")).or_else(compiles);
@@ -274,21 +274,21 @@ fn a_recipe_tells_where_its_bindings_are() {
             code.iter().any(is_it)
         };
         for place in comment.iter().filter_map(|line| line.strip_prefix("//   @group(")) {
-            let (declared, at) = place.rsplit_once(": ").expect("a place");
+            let (declared, position) = place.rsplit_once(": ").expect("a place");
             let name = declared.split(": ").next().and_then(|text| text.rsplit(' ').next()).expect("a name");
             let is_there = match shown.language {
                 Language::Hlsl => {
                     // Space 0 goes without saying.
-                    let bare = at.replace(", space0)", ")");
-                    has(name, &format!(": {at}")) || has(name, &format!(": {bare}"))
+                    let bare = position.replace(", space0)", ")");
+                    has(name, &format!(": {position}")) || has(name, &format!(": {bare}"))
                 }
-                Language::Msl => has(name, at),
+                Language::Msl => has(name, position),
                 // GLSL has no samplers of their own.
                 _ if declared.contains("sampler") => true,
-                Language::Glsl => has(name, &at[at.find("binding = ").expect("a number")..]),
+                Language::Glsl => has(name, &position[position.find("binding = ").expect("a number")..]),
                 Language::GlslEs => has(name, "uniform"),
             };
-            assert!(is_there, "{}: {declared} at {at}", shown.place);
+            assert!(is_there, "{}: {declared} at {position}", shown.place);
             rows += 1;
         }
         let count = match shown.language {
@@ -347,9 +347,9 @@ fn stages_of_a_recipe_link() {
     for recipe in RECIPES {
         let source = recipe.compose();
         let (ir, _) = dispatch::parse(&source, recipe.name).expect("valid WGSL");
-        let of = |stage| ir.entry_points.iter().filter(move |point| point.stage == stage);
+        let in_stage = |stage| ir.entry_points.iter().filter(move |point| point.stage == stage);
         for (vertex, fragment) in
-            of(ShaderStage::Vertex).flat_map(|vertex| of(ShaderStage::Fragment).map(move |it| (vertex, it)))
+            in_stage(ShaderStage::Vertex).flat_map(|vertex| in_stage(ShaderStage::Fragment).map(move |it| (vertex, it)))
         {
             let mut command = Command::new(TOOLS[0]);
             command.args(["-G", "-l", "--auto-map-locations", "-o"]).arg(folder.path().join("linked.spv"));

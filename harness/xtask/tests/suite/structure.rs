@@ -194,12 +194,12 @@ fn named(source: &str) -> Vec<String> {
             continue;
         };
         let (mut depth, mut start) = (0, 0);
-        for (at, letter) in list.char_indices() {
+        for (place, letter) in list.char_indices() {
             match letter {
                 '{' => depth += 1,
                 '}' | ',' if depth == 0 => {
-                    found.push(identifier(&list[start..at]));
-                    start = at + 1;
+                    found.push(identifier(&list[start..place]));
+                    start = place + 1;
                     if letter == '}' {
                         break;
                     }

@@ -151,39 +151,39 @@ impl Modules {
     }
 
     fn read_module(&mut self, sources: &Sources, tokens: &[&str], folder: &str, module: usize) {
-        let (mut at, mut depth) = (0, 0_usize);
-        while let Some(&token) = tokens.get(at) {
-            let next = tokens.get(at + 1).copied().unwrap_or_default();
-            let after = tokens.get(at + 2).copied().unwrap_or_default();
+        let (mut index, mut depth) = (0, 0_usize);
+        while let Some(&token) = tokens.get(index) {
+            let next = tokens.get(index + 1).copied().unwrap_or_default();
+            let after = tokens.get(index + 2).copied().unwrap_or_default();
             match token {
                 "{" | "(" | "[" => depth += 1,
                 "}" | ")" | "]" => depth = depth.saturating_sub(1),
                 "use" if next != "<" => {
-                    let is_public = at > 0 && ["pub", ")"].contains(&tokens[at - 1]);
-                    at = self.read_imports(tokens, at + 1, is_public, module);
+                    let is_public = index > 0 && ["pub", ")"].contains(&tokens[index - 1]);
+                    index = self.read_imports(tokens, index + 1, is_public, module);
                 }
                 "mod" if depth == 0 && after == "{" => {
-                    let end = closing(tokens, at + 2);
+                    let end = closing(tokens, index + 2);
                     let child = self.add(&self.0[module].file.clone(), Some(module));
                     self.0[module].children.insert(next.to_owned(), child);
-                    self.read_module(sources, &tokens[at + 3..end], &format!("{folder}{next}/"), child);
-                    at = end;
+                    self.read_module(sources, &tokens[index + 3..end], &format!("{folder}{next}/"), child);
+                    index = end;
                 }
                 "mod" if depth == 0 => {
-                    let own = format!("{folder}{next}/");
-                    let files = [format!("{folder}{next}.rs"), format!("{own}mod.rs")];
+                    let subfolder = format!("{folder}{next}/");
+                    let files = [format!("{folder}{next}.rs"), format!("{subfolder}mod.rs")];
                     if let Some(file) = files.iter().find(|file| sources.contains_key(*file)) {
-                        let child = self.read_file(sources, file, &own, Some(module));
+                        let child = self.read_file(sources, file, &subfolder, Some(module));
                         self.0[module].children.insert(next.to_owned(), child);
                     }
-                    at += 1;
+                    index += 1;
                 }
                 "macro_rules" => {
                     self.0[module].items.insert(after.to_owned());
-                    if tokens[..at].ends_with(&["[", "macro_export", "]"]) {
+                    if tokens[..index].ends_with(&["[", "macro_export", "]"]) {
                         self.0[0].macros.insert(after.to_owned(), module);
                     }
-                    at += 2;
+                    index += 2;
                 }
                 "fn" | "struct" | "enum" | "union" | "trait" | "type" | "const" | "static" if is_word(next) => {
                     let is_name = !["fn", "unsafe", "async", "extern", "mut"].contains(&next);
@@ -191,35 +191,35 @@ impl Modules {
                         self.0[module].items.insert(next.to_owned());
                     }
                     // What is defined here is not named by its definition.
-                    at += usize::from(is_name);
+                    index += usize::from(is_name);
                 }
                 _ if is_word(token) => {
                     self.0[module].calls_macros |= depth == 0 && next == "!";
-                    at = self.read_path(tokens, at, module);
+                    index = self.read_path(tokens, index, module);
                 }
                 _ => {}
             }
-            at += 1;
+            index += 1;
         }
     }
 
     /// Reads the path that begins at a token, and returns where its last name is.
     fn read_path(&mut self, tokens: &[&str], start: usize, module: usize) -> usize {
-        let mut at = start;
+        let mut last = start;
         let mut path = vec![tokens[start].to_owned()];
-        while tokens.get(at + 1) == Some(&"::") && tokens.get(at + 2).is_some_and(|token| is_word(token)) {
-            at += 2;
-            path.push(tokens[at].to_owned());
+        while tokens.get(last + 1) == Some(&"::") && tokens.get(last + 2).is_some_and(|token| is_word(token)) {
+            last += 2;
+            path.push(tokens[last].to_owned());
         }
-        let before = |steps: usize| start.checked_sub(steps).map_or("", |at| tokens[at]);
+        let before = |steps: usize| start.checked_sub(steps).map_or("", |place| tokens[place]);
         // A field, a method, or the rest of a path whose beginning is in angle brackets.
         let is_continued = before(1) == "::" || before(1) == "." && before(2) != ".";
         // A variable, or a field with its value or type.
-        let is_binding = path.len() == 1 && (before(1) == "let" || tokens.get(at + 1) == Some(&":"));
+        let is_binding = path.len() == 1 && (before(1) == "let" || tokens.get(last + 1) == Some(&":"));
         if !is_continued && !is_binding {
             self.0[module].mentions.push(path);
         }
-        at
+        last
     }
 
     /// Reads an import up to its semicolon, and returns where that is.
@@ -227,7 +227,7 @@ impl Modules {
         let end = start + tokens[start..].iter().position(|token| *token == ";").unwrap_or(tokens.len() - start);
         let module = &mut self.0[module];
         for mut path in leaves(&tokens[start..end]) {
-            let alias = path.iter().position(|name| name == "as").map(|at| path.split_off(at).remove(1));
+            let alias = path.iter().position(|name| name == "as").map(|place| path.split_off(place).remove(1));
             if path.last().is_some_and(|name| name == "self") {
                 path.pop();
             }
@@ -262,13 +262,13 @@ impl Modules {
             "super" => Target::Module(self.0[module].parent?),
             _ => self.find_name(module, first, is_qualifier || !rest.is_empty(), seen)?,
         };
-        for (at, name) in rest.iter().enumerate() {
+        for (index, name) in rest.iter().enumerate() {
             // What follows an item is its own: a variant or an associated function.
             let Target::Module(within) = target else { break };
             target = match name.as_str() {
                 "super" => Target::Module(self.0[within].parent?),
                 _ => {
-                    let found = self.find_name(within, name, is_qualifier || at + 1 < rest.len(), seen);
+                    let found = self.find_name(within, name, is_qualifier || index + 1 < rest.len(), seen);
                     let Module { calls_macros, imports, globs, .. } = &self.0[within];
                     let is_imported = !globs.is_empty() || imports.iter().any(|(imported, _)| imported == name);
                     let of_macro = Target::Item { module: within, name: name.clone() };
@@ -351,14 +351,14 @@ fn is_word(token: &str) -> bool {
 /// Returns where the bracket that opens at `open` closes.
 fn closing(tokens: &[&str], open: usize) -> usize {
     let mut depth = 0_usize;
-    for (at, token) in tokens.iter().enumerate().skip(open) {
+    for (index, token) in tokens.iter().enumerate().skip(open) {
         match *token {
             "{" | "(" | "[" => depth += 1,
             "}" | ")" | "]" => depth = depth.saturating_sub(1),
             _ => {}
         }
         if depth == 0 {
-            return at;
+            return index;
         }
     }
     tokens.len()
@@ -367,20 +367,20 @@ fn closing(tokens: &[&str], open: usize) -> usize {
 /// Leaves out the items under `#[cfg(test)]` and `#[cfg(all(test, …))]`.
 fn without_tests<'source>(tokens: &[&'source str]) -> Vec<&'source str> {
     let mut kept = Vec::new();
-    let mut at = 0;
-    while let Some(&token) = tokens.get(at) {
-        let rest = &tokens[at..];
+    let mut index = 0;
+    while let Some(&token) = tokens.get(index) {
+        let rest = &tokens[index..];
         if rest.starts_with(&["#", "!", "[", "cfg", "(", "test", ")"]) {
             return Vec::new();
         }
         let is_test = rest.starts_with(&["#", "[", "cfg", "(", "test", ")"])
             || rest.starts_with(&["#", "[", "cfg", "(", "all", "(", "test", ","]);
         if is_test {
-            at = item_end(tokens, at);
+            index = item_end(tokens, index);
         } else {
             kept.push(token);
         }
-        at += 1;
+        index += 1;
     }
     kept
 }
@@ -388,26 +388,26 @@ fn without_tests<'source>(tokens: &[&'source str]) -> Vec<&'source str> {
 /// Returns where an item ends that begins with an attribute: at a semicolon, or at the brace that
 /// closes its body.
 fn item_end(tokens: &[&str], start: usize) -> usize {
-    let mut at = start;
-    while tokens.get(at) == Some(&"#") {
-        at = closing(tokens, at + 1) + 1;
+    let mut index = start;
+    while tokens.get(index) == Some(&"#") {
+        index = closing(tokens, index + 1) + 1;
     }
     let mut is_import = false;
-    while let Some(&token) = tokens.get(at) {
+    while let Some(&token) = tokens.get(index) {
         match token {
             "use" => is_import = true,
-            ";" => return at,
+            ";" => return index,
             "{" | "(" | "[" => {
-                at = closing(tokens, at);
+                index = closing(tokens, index);
                 if token == "{" && !is_import {
-                    return at;
+                    return index;
                 }
             }
             _ => {}
         }
-        at += 1;
+        index += 1;
     }
-    at
+    index
 }
 
 /// Splits a source into words, `::` and single signs, without comments, strings, characters,
@@ -424,7 +424,7 @@ fn tokens(source: &str) -> Vec<&str> {
             block_comment(rest)
         } else if let Some(raw) = raw.filter(|raw| raw[hashes..].starts_with('"')) {
             let (start, end) = (rest.len() - raw.len() + hashes + 1, format!("\"{}", "#".repeat(hashes)));
-            rest[start..].find(&end).map_or(rest.len(), |at| start + at + end.len())
+            rest[start..].find(&end).map_or(rest.len(), |place| start + place + end.len())
         } else if letter == '"' {
             quoted(rest)
         } else if letter == '\'' {
@@ -461,12 +461,12 @@ fn word(text: &str) -> usize {
 /// Returns the length of the string or character at the start of a text, with its quotes.
 fn quoted(text: &str) -> usize {
     let quote = text.as_bytes()[0];
-    let mut at = 1;
-    while let Some(byte) = text.as_bytes().get(at) {
+    let mut end = 1;
+    while let Some(byte) = text.as_bytes().get(end) {
         match byte {
-            b'\\' => at += 2,
-            byte if *byte == quote => return at + 1,
-            _ => at += 1,
+            b'\\' => end += 2,
+            byte if *byte == quote => return end + 1,
+            _ => end += 1,
         }
     }
     text.len()
@@ -474,20 +474,20 @@ fn quoted(text: &str) -> usize {
 
 /// Returns the length of the comment at the start of a text, with those inside it.
 fn block_comment(text: &str) -> usize {
-    let (mut at, mut depth) = (0, 0_usize);
-    while at < text.len() {
-        let pair = text.as_bytes().get(at..at + 2).unwrap_or_default();
+    let (mut end, mut depth) = (0, 0_usize);
+    while end < text.len() {
+        let pair = text.as_bytes().get(end..end + 2).unwrap_or_default();
         match pair {
             b"/*" => depth += 1,
             b"*/" => depth -= 1,
             _ => {
-                at += 1;
+                end += 1;
                 continue;
             }
         }
-        at += 2;
+        end += 2;
         if depth == 0 {
-            return at;
+            return end;
         }
     }
     text.len()

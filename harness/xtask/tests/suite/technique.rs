@@ -52,9 +52,9 @@ fn a_new_technique_keeps_the_contract_and_is_known_to_cargo() {
     ] {
         let text = read(file);
         let lines: Vec<&str> = text.lines().collect();
-        let at = lines.iter().position(|found| *found == line).unwrap_or_else(|| panic!("{file}:\n{text}"));
+        let place = lines.iter().position(|found| *found == line).unwrap_or_else(|| panic!("{file}:\n{text}"));
         let name = |line: &str| line.split([' ', '.']).next().unwrap_or_default().to_owned();
-        assert!(name(lines[at - 1]) < name(line) && name(line) < name(lines[at + 1]), "{file}:\n{text}");
+        assert!(name(lines[place - 1]) < name(line) && name(line) < name(lines[place + 1]), "{file}:\n{text}");
     }
     let changes = read("CHANGELOG.md");
     assert!(changes.contains("### New\n\n- `thin_film`: a new module.\n- `"), "{changes}");

@@ -43,13 +43,13 @@ fn every_module_states_the_release() {
 /// The page of drivers shows the values of the records.
 #[test]
 fn the_drivers_are_as_recorded() {
-    let of = |folder: &str| -> builtins::Report {
+    let record_of = |folder: &str| -> builtins::Report {
         serde_json::from_str(&read(&format!("docs/measurements/{folder}/builtins.json"))).expect(folder)
     };
     let builtins = builtins::side_by_side(&[
-        ("lavapipe", of("lavapipe")),
-        ("SwiftShader", of("swiftshader")),
-        ("NVIDIA H200", of("nvidia_h200")),
+        ("lavapipe", record_of("lavapipe")),
+        ("SwiftShader", record_of("swiftshader")),
+        ("NVIDIA H200", record_of("nvidia_h200")),
     ]);
     let rows: Vec<Row> = serde_json::from_str(&read("docs/measurements/swiftshader/check.json")).expect("rows");
     let page = read("docs/drivers.md");

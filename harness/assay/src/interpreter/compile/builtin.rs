@@ -26,8 +26,8 @@ impl Compiler<'_> {
             Fun::Dot => vec![self.dot(&arguments[0], &arguments[1])],
             Fun::Length => vec![self.length(&arguments[0], site)],
             Fun::Distance => {
-                let apart = self.each(&arguments[..2], |compiler, x| compiler.subtract(x[0], x[1]));
-                vec![self.length(&apart, site)]
+                let difference = self.each(&arguments[..2], |compiler, x| compiler.subtract(x[0], x[1]));
+                vec![self.length(&difference, site)]
             }
             Fun::Normalize => {
                 let length = self.length(&arguments[0], site);
@@ -78,18 +78,18 @@ impl Compiler<'_> {
         })
     }
 
-    /// Applies `of` component by component; a scalar is repeated to match the vectors.
+    /// Applies `operation` component by component; a scalar is repeated to match the vectors.
     fn each(
         &mut self,
         arguments: &[Vec<Register>],
-        mut of: impl FnMut(&mut Self, &[Register]) -> Register,
+        mut operation: impl FnMut(&mut Self, &[Register]) -> Register,
     ) -> Vec<Register> {
         let length = arguments.iter().map(Vec::len).max().unwrap_or(0);
         (0..length)
             .map(|index| {
                 let operands: Vec<Register> =
                     arguments.iter().map(|argument| argument[index % argument.len()]).collect();
-                of(self, &operands)
+                operation(self, &operands)
             })
             .collect()
     }
@@ -132,28 +132,28 @@ impl Compiler<'_> {
     fn scalar(&mut self, fun: Fun, operands: &[Register], site: Site) -> Option<Register> {
         let x = operands[0];
         let y = operands.get(1).copied().unwrap_or(x);
-        let of = |fun: Float| (fun, x, y);
+        let call_of = |fun: Float| (fun, x, y);
         let (fun, x, y) = match fun {
-            Fun::Abs => of(Float::Abs),
-            Fun::Sign => of(Float::Sign),
-            Fun::Floor => of(Float::Floor),
-            Fun::Ceil => of(Float::Ceil),
-            Fun::Round => of(Float::Round),
-            Fun::Trunc => of(Float::Trunc),
-            Fun::Sqrt => of(Float::Sqrt),
-            Fun::InverseSqrt => of(Float::InverseSqrt),
-            Fun::Exp => of(Float::Exp),
-            Fun::Exp2 => of(Float::Exp2),
-            Fun::Log => of(Float::Log),
-            Fun::Log2 => of(Float::Log2),
-            Fun::Pow => of(Float::Pow),
-            Fun::Sin => of(Float::Sin),
-            Fun::Cos => of(Float::Cos),
-            Fun::Asin => of(Float::Asin),
-            Fun::Acos => of(Float::Acos),
-            Fun::Atan => of(Float::Atan),
-            Fun::Atan2 => of(Float::Atan2),
-            Fun::Step => of(Float::Step),
+            Fun::Abs => call_of(Float::Abs),
+            Fun::Sign => call_of(Float::Sign),
+            Fun::Floor => call_of(Float::Floor),
+            Fun::Ceil => call_of(Float::Ceil),
+            Fun::Round => call_of(Float::Round),
+            Fun::Trunc => call_of(Float::Trunc),
+            Fun::Sqrt => call_of(Float::Sqrt),
+            Fun::InverseSqrt => call_of(Float::InverseSqrt),
+            Fun::Exp => call_of(Float::Exp),
+            Fun::Exp2 => call_of(Float::Exp2),
+            Fun::Log => call_of(Float::Log),
+            Fun::Log2 => call_of(Float::Log2),
+            Fun::Pow => call_of(Float::Pow),
+            Fun::Sin => call_of(Float::Sin),
+            Fun::Cos => call_of(Float::Cos),
+            Fun::Asin => call_of(Float::Asin),
+            Fun::Acos => call_of(Float::Acos),
+            Fun::Atan => call_of(Float::Atan),
+            Fun::Atan2 => call_of(Float::Atan2),
+            Fun::Step => call_of(Float::Step),
             Fun::Fract => {
                 let below = self.function(Float::Floor, x, x, site);
                 return Some(self.subtract(x, below));

@@ -93,7 +93,7 @@ pub(super) fn constant(
             Literal::AbstractFloat(value) => (value as f32).to_bits(),
             _ => return None,
         }],
-        Expression::Constant(of) => constant(module, &module.global_expressions, module.constants[*of].init)?,
+        Expression::Constant(named) => constant(module, &module.global_expressions, module.constants[*named].init)?,
         Expression::ZeroValue(ty) => vec![0; words_of(module, &module.types[*ty].inner)],
         Expression::Compose { components, .. } => {
             let parts = components.iter().map(|part| constant(module, expressions, *part));

@@ -17,11 +17,11 @@ pub(super) fn surrounded(surface: &Surface, sheets: Vec<Sheet>, reach: f64) -> V
     // A NaN means no halo, too.
     let edges = if reach > 0.0 { edges(surface) } else { Vec::new() };
     let chart = |mut sheet: Sheet| {
-        let own = sheet.triangles.len();
+        let count = sheet.triangles.len();
         if reach > 0.0 {
             surround(surface, &edges, &mut sheet, reach);
         }
-        let halo = sheet.triangles.split_off(own);
+        let halo = sheet.triangles.split_off(count);
         Chart { axis: sheet.axis, triangles: sheet.triangles, halo }
     };
     sheets.into_iter().map(chart).collect()

@@ -45,7 +45,7 @@ impl Sheet {
 /// Whether the interiors of two triangles have a point in common. Both are drawn clockwise with the
 /// second axis down. A triangle that only touches an edge, up to f64 rounding, does not overlap.
 fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
-    let apart = |a: &[DVec2; 3], b: &[DVec2; 3]| {
+    let separates = |a: &[DVec2; 3], b: &[DVec2; 3]| {
         [(0, 1), (1, 2), (2, 0)].into_iter().any(|(k, l)| {
             let along = a[l] - a[k];
             b.iter().all(|&point| {
@@ -54,5 +54,5 @@ fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
             })
         })
     };
-    !apart(a, b) && !apart(b, a)
+    !separates(a, b) && !separates(b, a)
 }

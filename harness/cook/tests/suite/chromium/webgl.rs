@@ -32,9 +32,9 @@ impl<'browser> InWebGl<'browser> {
     fn new(browser: &'browser Browser, formula: &Formula, text: &str) -> Self {
         let arguments: usize = formula.arguments.iter().map(Shape::words).sum();
         let results = formula.result.words();
-        let varyings: Vec<String> = (0..results.div_ceil(4)).map(|at| format!("found{at}")).collect();
-        let mut at = 0;
-        let values: Vec<String> = formula.arguments.iter().map(|shape| made(shape, &mut at)).collect();
+        let varyings: Vec<String> = (0..results.div_ceil(4)).map(|index| format!("found{index}")).collect();
+        let mut place = 0;
+        let values: Vec<String> = formula.arguments.iter().map(|shape| made(shape, &mut place)).collect();
         let mut words = Vec::new();
         taken(&formula.result, "result", text, &mut words);
         words.resize(4 * varyings.len(), "0u".to_owned());
@@ -76,11 +76,11 @@ fn type_of(shape: &Shape) -> String {
     }
 }
 
-/// Returns the value of a shape whose words begin at `at`.
-fn made(shape: &Shape, at: &mut usize) -> String {
+/// Returns the value of a shape whose words begin at `place`.
+fn made(shape: &Shape, place: &mut usize) -> String {
     let mut scalar = |kind: Scalar| {
-        let word = format!("word({at})");
-        *at += 1;
+        let word = format!("word({place})");
+        *place += 1;
         match kind {
             Scalar::F32 => format!("uintBitsToFloat({word})"),
             Scalar::I32 => format!("int({word})"),
@@ -92,8 +92,8 @@ fn made(shape: &Shape, at: &mut usize) -> String {
         Shape::Scalar(kind) => return scalar(*kind),
         Shape::Vector(size, kind) => (0..*size).map(|_| scalar(*kind)).collect(),
         Shape::Matrix(columns, rows) => (0..columns * rows).map(|_| scalar(Scalar::F32)).collect(),
-        Shape::Array(element, length) => (0..*length).map(|_| made(element, at)).collect(),
-        Shape::Struct(_, fields) => fields.iter().map(|(_, shape)| made(shape, at)).collect(),
+        Shape::Array(element, length) => (0..*length).map(|_| made(element, place)).collect(),
+        Shape::Struct(_, fields) => fields.iter().map(|(_, shape)| made(shape, place)).collect(),
     };
     format!("{}({})", type_of(shape), parts.join(", "))
 }
@@ -109,7 +109,7 @@ fn taken(shape: &Shape, value: &str, text: &str, words: &mut Vec<String>) {
         Shape::Scalar(kind) => words.push(scalar(kind, value.to_owned())),
         Shape::Vector(size, kind) => {
             words.extend(
-                (0..usize::from(*size)).map(|at| scalar(kind, format!("{value}.{}", ["x", "y", "z", "w"][at]))),
+                (0..usize::from(*size)).map(|index| scalar(kind, format!("{value}.{}", ["x", "y", "z", "w"][index]))),
             );
         }
         Shape::Matrix(columns, rows) => {
@@ -118,7 +118,7 @@ fn taken(shape: &Shape, value: &str, text: &str, words: &mut Vec<String>) {
             }
         }
         Shape::Array(element, length) => {
-            (0..*length).for_each(|at| taken(element, &format!("{value}[{at}]"), text, words))
+            (0..*length).for_each(|index| taken(element, &format!("{value}[{index}]"), text, words))
         }
         Shape::Struct(_, fields) => {
             for (name, shape) in fields {

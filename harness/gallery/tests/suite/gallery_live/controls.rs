@@ -69,9 +69,9 @@ fn a_wipe_stands_between_two_rungs() {
     let side = SIDE as usize;
     let split = side / 4;
     for (row, pixels) in both.chunks_exact(4 * side).enumerate() {
-        let at = |from: usize, to: usize| 4 * (row * side + from)..4 * (row * side + to);
-        assert_eq!(pixels[..4 * split], one[at(0, split)], "row {row}, left");
-        assert_eq!(pixels[4 * split..], other[at(split, side)], "row {row}, right");
+        let span = |from: usize, to: usize| 4 * (row * side + from)..4 * (row * side + to);
+        assert_eq!(pixels[..4 * split], one[span(0, split)], "row {row}, left");
+        assert_eq!(pixels[4 * split..], other[span(split, side)], "row {row}, right");
     }
 }
 
@@ -339,8 +339,8 @@ fn fingers_turn_zoom_and_scroll() {
         let [x, y] = [0, 1].map(|part| middle[part].as_f64().expect("a number"));
         let mut touch = |kind: &str, share: Option<f64>| {
             let points = from.iter().zip(to).zip(0..).map(|((from, to), id)| {
-                let at = |part: usize| from[part] + share.unwrap_or(0.0) * (to[part] - from[part]);
-                json!({ "x": x + at(0), "y": y + at(1), "id": id })
+                let offset = |part: usize| from[part] + share.unwrap_or(0.0) * (to[part] - from[part]);
+                json!({ "x": x + offset(0), "y": y + offset(1), "id": id })
             });
             let points: Vec<_> = if share.is_some() { points.collect() } else { Vec::new() };
             page.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).expect(kind);

@@ -137,8 +137,8 @@ fn what_is_changed_but_not_checked_is_named() {
     assert!(checked(&mut page).starts_with("All "));
     edit(&mut page, "fn dispersion_sellmeier(", "const DISPERSION_NEW = 1.0f;\nfn dispersion_sellmeier(");
     edit(&mut page, "return max(sqrt(max(1.0f + material", "return max(sqrt(max(DISPERSION_NEW + material");
-    let own = checked(&mut page);
-    assert!(own.starts_with("dispersion_sellmeier is changed too, but not checked"), "{own}");
+    let alone = checked(&mut page);
+    assert!(alone.starts_with("dispersion_sellmeier is changed too, but not checked"), "{alone}");
     editing_other(&mut page, "dispersion_sellmeier");
     let both = checked(&mut page);
     assert!(both.starts_with("All ") && !both.contains("changed"), "{both}");
@@ -207,7 +207,7 @@ fn changes_are_found_by_the_rules_of_wgsl() {
     assert!(through.starts_with("dispersion_sellmeier is changed, but not checked"), "{through}");
     page.click(".check-restore").expect("a button");
     // A chain of constants.
-    let chain: String = (1..20_000).map(|at| format!("const C{at} = C{};", at - 1)).collect();
+    let chain: String = (1..20_000).map(|index| format!("const C{index} = C{};", index - 1)).collect();
     edit(&mut page, sellmeier, &format!("const C0 = 1.0f;{chain}\n{sellmeier}"));
     use_of(&mut page, "C19999");
     let long = checked(&mut page);

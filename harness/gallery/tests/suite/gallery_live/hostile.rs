@@ -120,7 +120,7 @@ fn target_bytes(format: &str) -> u64 {
 
 /// What a frame needs of some limits, by its rows. Both stages of a pipeline count as one.
 fn needs(frame: &Value) -> BTreeMap<&'static str, u64> {
-    let rows = |of: &Value, key: &str| of[key].as_array().cloned().unwrap_or_default();
+    let rows = |object: &Value, key: &str| object[key].as_array().cloned().unwrap_or_default();
     let resources = rows(frame, "resources");
     let number = |value: &Value| value.as_u64().unwrap_or_default();
     let mut needs = BTreeMap::new();
@@ -275,7 +275,7 @@ fn a_dropped_environment_lights_and_another_file_is_refused() {
     let before = shown(&mut page);
     // Cut short, of another kind, empty.
     let mut good = Vec::new();
-    let texel = |at: usize| image::Rgb([if at % 64 < 20 { 4.0 } else { 0.1f32 }, 0.3, 0.2]);
+    let texel = |index: usize| image::Rgb([if index % 64 < 20 { 4.0 } else { 0.1f32 }, 0.3, 0.2]);
     let texels: Vec<_> = (0..64 * 32).map(texel).collect();
     HdrEncoder::new(&mut good).encode(&texels, 64, 32).expect("encoded");
     let cases: [(&str, &[u8]); 3] =

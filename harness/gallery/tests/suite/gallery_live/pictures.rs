@@ -60,10 +60,10 @@ fn the_canvas_shows_what_the_renderer_draws() {
         let scene = Scene::named(live.scene).expect("built in");
         let Some(mut page) = running(live.scene, &format!("rung={}", rung.replace('+', "%2B"))) else { return };
         assert_eq!(page.evaluate("gallery.live.state.rung").expect("a state"), rung, "{}", live.scene);
-        let apart = apart(&shown(&mut page), &drawn(live, rung, &scene));
-        println!("{:10} {rung:20} {apart:?}", live.scene);
-        if !apart.holds() {
-            wrong.push(format!("{} {rung}: {apart:?}", live.scene));
+        let difference = apart(&shown(&mut page), &drawn(live, rung, &scene));
+        println!("{:10} {rung:20} {difference:?}", live.scene);
+        if !difference.holds() {
+            wrong.push(format!("{} {rung}: {difference:?}", live.scene));
         }
         let problems = page.problems().expect("a list");
         wrong.extend(problems.iter().map(|problem| format!("{} {rung}: {problem}", live.scene)));
@@ -112,8 +112,8 @@ fn the_eye_goes_where_the_renderer_puts_it() {
         let mut turned = scene.clone();
         turned.camera.up = Vec3::Y;
         turned.camera.eye = scene.camera.target + distance * Vec3::new(across * right, up, across * front);
-        let apart = apart(&shown(&mut page), &drawn(live, live.rungs[0], &turned));
-        println!("{polar} {azimuth} {share}: {apart:?}");
-        assert!(apart.holds(), "{polar} {azimuth} {share}: {apart:?}");
+        let difference = apart(&shown(&mut page), &drawn(live, live.rungs[0], &turned));
+        println!("{polar} {azimuth} {share}: {difference:?}");
+        assert!(difference.holds(), "{polar} {azimuth} {share}: {difference:?}");
     }
 }

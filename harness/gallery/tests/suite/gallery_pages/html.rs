@@ -61,9 +61,9 @@ pub(crate) fn pieces(html: &str) -> Vec<Piece> {
 /// Cuts at the tag's end, which is not in quotes.
 fn cut(text: &str) -> (&str, &str) {
     let mut quote = None;
-    for (at, letter) in text.char_indices() {
+    for (index, letter) in text.char_indices() {
         match (quote, letter) {
-            (None, '>') => return (&text[..at], &text[at + 1..]),
+            (None, '>') => return (&text[..index], &text[index + 1..]),
             (None, '"' | '\'') => quote = Some(letter),
             (Some(open), _) if open == letter => quote = None,
             _ => {}

@@ -42,9 +42,9 @@ fn tab_reaches_everything_and_shows_where_it_is() {
     );
     let mut reached = BTreeSet::new();
     for _ in 0..150 {
-        let at = focused(&mut page);
-        assert!(at["inside"] == true && at["visible"] == true, "a focus that cannot be seen: {at}");
-        reached.insert(at["name"].as_str().expect("a name").to_owned());
+        let focus = focused(&mut page);
+        assert!(focus["inside"] == true && focus["visible"] == true, "a focus that cannot be seen: {focus}");
+        reached.insert(focus["name"].as_str().expect("a name").to_owned());
         if ["skip", "search", "navigation", "copy"].iter().all(|name| reached.contains(*name)) {
             break;
         }
@@ -124,12 +124,12 @@ fn a_comparison_moves_by_arrows() {
         return parts.map((part) => { const style = getComputedStyle(part); return [style.clipPath, style.left, style.width, style.transform].join(); }).join(';');
     })()";
     let number = "Number(document.querySelector('.compare-wipe').value)";
-    let (before, at) = (page.evaluate(look).expect("a look"), page.evaluate(number).expect("a value"));
+    let (before, from) = (page.evaluate(look).expect("a look"), page.evaluate(number).expect("a value"));
     for _ in 0..10 {
         page.press("ArrowRight").expect("pressed");
     }
     let (after, to) = (page.evaluate(look).expect("a look"), page.evaluate(number).expect("a value"));
-    assert!(to.as_f64() > at.as_f64(), "{at} {to}");
+    assert!(to.as_f64() > from.as_f64(), "{from} {to}");
     assert_ne!(before, after, "the picture does not follow the slider");
     page.press("Home").expect("pressed");
     assert_eq!(page.evaluate(number).expect("a value"), 0);
@@ -148,12 +148,12 @@ fn a_plots_device_is_chosen_by_arrows() {
 }
 
 /// Whether the large picture is that of the link at a place, which stands there once it has come.
-fn is_large(at: usize) -> String {
+fn is_large(place: usize) -> String {
     format!(
         "(() => {{
             const links = [...new Set([...document.querySelectorAll('a.picture')].map((link) => link.href))];
             const image = document.querySelector('dialog[open] img');
-            return image?.complete && image.naturalWidth > 0 && image.src === links[{at}];
+            return image?.complete && image.naturalWidth > 0 && image.src === links[{place}];
         }})()"
     )
 }

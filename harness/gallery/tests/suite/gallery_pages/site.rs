@@ -135,7 +135,7 @@ impl SitePage {
 
     /// Returns the values that the page's `select` with this id offers.
     pub(crate) fn options(&self, id: &str) -> Vec<String> {
-        let is_it = |piece: &&Piece| matches!(piece, Piece::Start(_, attributes) if attributes.get("id").is_some_and(|of| of == id));
+        let is_it = |piece: &&Piece| matches!(piece, Piece::Start(_, attributes) if attributes.get("id").is_some_and(|found| found == id));
         let within = self.pieces.iter().skip_while(|piece| !is_it(piece));
         let within = within.take_while(|piece| !matches!(piece, Piece::End(name) if name == "select"));
         let value = |piece: &Piece| match piece {
@@ -192,13 +192,13 @@ pub(crate) fn resolved(page: &str, address: &str) -> Option<String> {
 #[test]
 fn addresses_are_resolved() {
     let page = "modules/srgb.html";
-    let of = |address: &str| resolved(page, address);
-    assert_eq!(of("../index.html#top").as_deref(), Some("index.html"));
-    assert_eq!(of("veins.html?x").as_deref(), Some("modules/veins.html"));
-    assert_eq!(of("#here").as_deref(), Some(page));
-    assert_eq!(of("../../etc/passwd").as_deref(), Some("(outside)/../../etc/passwd"));
-    assert_eq!(of("/etc/passwd").as_deref(), Some("/etc/passwd"));
-    assert_eq!([of("https://example.org/a"), of("data:,")], [None, None]);
+    let target_of = |address: &str| resolved(page, address);
+    assert_eq!(target_of("../index.html#top").as_deref(), Some("index.html"));
+    assert_eq!(target_of("veins.html?x").as_deref(), Some("modules/veins.html"));
+    assert_eq!(target_of("#here").as_deref(), Some(page));
+    assert_eq!(target_of("../../etc/passwd").as_deref(), Some("(outside)/../../etc/passwd"));
+    assert_eq!(target_of("/etc/passwd").as_deref(), Some("/etc/passwd"));
+    assert_eq!([target_of("https://example.org/a"), target_of("data:,")], [None, None]);
     assert_eq!(["walk-8%2Btracker", "100%", "%C3%A9", "a%2"].map(decoded), ["walk-8+tracker", "100%", "é", "a%2"]);
     assert_eq!(["../images/a.b.jpg", "a%20b.png", "a"].map(stem), ["a.b", "a b", "a"]);
 }

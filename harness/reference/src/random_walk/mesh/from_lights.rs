@@ -101,10 +101,11 @@ pub(super) fn coverage(
     note: &(dyn Fn() + Sync),
 ) -> Vec<f32> {
     const SIDE: u32 = 8;
-    let at = |from: u32, cell: u32| f64::from(from) + (f64::from(cell) + 0.5) / f64::from(SIDE);
+    let centre = |from: u32, cell: u32| f64::from(from) + (f64::from(cell) + 0.5) / f64::from(SIDE);
     let pixel = |x: u32, y: u32| {
-        let meets =
-            |sample: &u32| matter.enter(view.eye, view.direction(at(x, sample % SIDE), at(y, sample / SIDE))).is_some();
+        let meets = |sample: &u32| {
+            matter.enter(view.eye, view.direction(centre(x, sample % SIDE), centre(y, sample / SIDE))).is_some()
+        };
         (0..SIDE * SIDE).filter(meets).count() as f32 / (SIDE * SIDE) as f32
     };
     let row = |y: u32| {

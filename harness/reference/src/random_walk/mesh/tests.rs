@@ -68,9 +68,9 @@ fn a_far_point_light_is_a_directional_one() {
     let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
     // The walks are the same: only the direction to the light differs, by 1e-6, and by f32
     // rounding.
-    let apart = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..4).all(|k| (a[k] - b[k]).abs() <= 1e-4 * a[k] + 1e-6);
+    let differ = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..4).all(|k| (a[k] - b[k]).abs() <= 1e-4 * a[k] + 1e-6);
     // However, light that grazes an edge may fall on either side.
-    let (compared, different) = (pairs().count(), pairs().filter(apart).count());
+    let (compared, different) = (pairs().count(), pairs().filter(differ).count());
     let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
     let ratio = total(&lamplit) / total(&sunlit);
     println!("{different} of {compared} pixels differ; in all {ratio}");
@@ -198,8 +198,8 @@ fn a_sun_behind_a_boundary_is_a_disc_met_by_chance() {
     let cell = PI / f64::from(rows);
     let irradiance: DVec3 = (0..columns * rows)
         .map(|place| {
-            let at = |index: u32| (f64::from(index) + 0.5) / f64::from(fine) - 0.5;
-            let from = direction(at(place % columns), at(place / columns));
+            let centre = |index: u32| (f64::from(index) + 0.5) / f64::from(fine) - 0.5;
+            let from = direction(centre(place % columns), centre(place / columns));
             let polar = (f64::from(place / columns) + 0.5) * cell;
             disc.radiance(from) * from.dot(toward).max(0.0) * polar.sin() * cell * cell
         })

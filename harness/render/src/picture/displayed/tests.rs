@@ -40,27 +40,28 @@ fn samples_are_tone_mapped_before_they_are_averaged() {
         };
         let grid: Vec<[f32; 4]> = (0..width * height * samples * samples).map(of_draws).collect();
         let picture = displayed(&grid, &settings);
-        let mut apart = 0;
+        let mut differing = 0;
         for (index, (encoded, linear)) in (0..).zip(picture.encoded.iter().zip(&picture.linear)) {
             let (column, row) = (index % width, index / width);
-            let at = |k: u32| (row * samples + k / samples) * width * samples + column * samples + k % samples;
-            let own: Vec<Vec4> = (0..samples * samples).map(|k| Vec4::from_array(grid[at(k) as usize])).collect();
+            let sample = |k: u32| (row * samples + k / samples) * width * samples + column * samples + k % samples;
+            let pixel_samples: Vec<Vec4> =
+                (0..samples * samples).map(|k| Vec4::from_array(grid[sample(k) as usize])).collect();
             let place = Vec2::new(column as f32, row as f32) + 0.5;
             let behind = backdrop(place, Vec2::new(width as f32, height as f32));
-            let expected = 255.0 * shown(&own, settings.exposure, behind);
+            let expected = 255.0 * shown(&pixel_samples, settings.exposure, behind);
             // Half a step of rounding, plus the difference of the formulas: 64 sums of 2^-24, 20
             // ulp of the curve and 6e-6 of the encoding, times 255.
             let found = Vec3::from_array([0, 1, 2].map(|k| f32::from(encoded[k])));
             assert!((found - expected).abs().cmple(Vec3::splat(0.503)).all(), "{column} {row}: {found} {expected}");
-            let mean = own.iter().sum::<Vec4>() / own.len() as f32;
-            let bound = 64.0 * f32::EPSILON * own.iter().copied().fold(Vec4::ZERO, Vec4::max);
+            let mean = pixel_samples.iter().sum::<Vec4>() / pixel_samples.len() as f32;
+            let bound = 64.0 * f32::EPSILON * pixel_samples.iter().copied().fold(Vec4::ZERO, Vec4::max);
             assert!((Vec4::from_array(*linear) - mean).abs().cmple(bound).all(), "{column} {row}: {linear:?} {mean}");
             // The pixel if the mean were tone-mapped instead.
             let late = 255.0 * shown(&[mean], settings.exposure, behind);
-            apart += u32::from((late - expected).abs().max_element() > 8.0);
+            differing += u32::from((late - expected).abs().max_element() > 8.0);
         }
-        println!("{samples}: {apart} of {} pixels would differ by more than 8 steps", width * height);
-        assert_eq!(samples > 1, apart > width * height / 4, "{samples}: {apart}");
+        println!("{samples}: {differing} of {} pixels would differ by more than 8 steps", width * height);
+        assert_eq!(samples > 1, differing > width * height / 4, "{samples}: {differing}");
     }
 }
 
@@ -97,8 +98,8 @@ fn tiles_meet() {
     let rung = "surface".parse().expect("a rung");
     let of_samples = |samples| Settings { rung, samples, ..Settings::of_size(320, 320) };
     let [eight, four] = [8, 4].map(|samples| render(gpu(), &scene, &of_samples(samples)).expect("rendered"));
-    let apart = |place: usize| f64::from(eight.encoded[place][1].abs_diff(four.encoded[place][1]));
-    let of_column = |column: usize| (0..320).map(|row| apart(320 * row + column)).sum::<f64>() / 320.0;
+    let difference = |place: usize| f64::from(eight.encoded[place][1].abs_diff(four.encoded[place][1]));
+    let of_column = |column: usize| (0..320).map(|row| difference(320 * row + column)).sum::<f64>() / 320.0;
     let all = (0..320).map(of_column).sum::<f64>() / 320.0;
     for column in 255..=256 {
         println!("column {column}: {:.2} steps in the mean, {all:.2} everywhere", of_column(column));
@@ -121,13 +122,13 @@ fn the_reference_is_shown_alike() {
         ..surface.clone()
     };
     let followed = render(gpu(), &scene, &reference).expect("rendered");
-    let apart = |one: &Picture| {
+    let differing = |one: &Picture| {
         let pairs = one.encoded.iter().zip(&drawn.encoded);
         pairs.filter(|(a, b)| (0..3).any(|k| a[k].abs_diff(b[k]) > 2)).count()
     };
     let mut means = followed.clone();
     encode(gpu(), &reference, &mut means).expect("encoded");
-    let (samples, means) = (apart(&followed), apart(&means));
+    let (samples, means) = (differing(&followed), differing(&means));
     println!("{samples} pixels differ, {means} where means are shown");
     // A sample on an edge may fall to either side.
     assert!(samples <= 64 && means > 4 * samples.max(8), "{samples} {means}");

@@ -49,7 +49,7 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     let executor = Executor::new(gpu, builder.finish()).expect("made");
     executor.run(|_, bytes| texels.extend(bytes.chunks_exact(8).map(red))).expect("run");
     // Bilinear filtering of a repeating texture.
-    let at = |place: Vec2| {
+    let texel_at = |place: Vec2| {
         let place = place.as_ivec2().rem_euclid(glam::IVec2::splat(SIDE as i32));
         texels[(place.y * SIDE as i32 + place.x) as usize]
     };
@@ -57,7 +57,7 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
         let place = uv * SIDE as f32 - 0.5;
         let (corner, share) = (place.floor(), place - place.floor());
         let row = |y: f32| {
-            let [left, right] = [0.0, 1.0].map(|x| at(corner + Vec2::new(x, y)));
+            let [left, right] = [0.0, 1.0].map(|x| texel_at(corner + Vec2::new(x, y)));
             left + share.x * (right - left)
         };
         row(0.0) + share.y * (row(1.0) - row(0.0))

@@ -59,7 +59,7 @@ fn count(size: [u32; 2]) -> u32 {
 }
 
 /// Returns the next level of an image of this size, given as its texel at each place.
-fn halved<T>(size: [u32; 2], at: impl Fn(usize) -> T) -> Vec<T>
+fn halved<T>(size: [u32; 2], texel: impl Fn(usize) -> T) -> Vec<T>
 where
     T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,
 {
@@ -70,7 +70,7 @@ where
             let mut sum = T::default();
             for (y, high) in row {
                 for (x, wide) in column {
-                    sum = sum + at(y * size[0] as usize + x) * (high * wide);
+                    sum = sum + texel(y * size[0] as usize + x) * (high * wide);
                 }
             }
             made.push(sum);

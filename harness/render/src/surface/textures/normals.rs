@@ -70,7 +70,7 @@ impl Normals {
                     weights
                         .iter()
                         .zip(beside)
-                        .map(|(weight, at)| *weight * self.normals[place(row, *at)])
+                        .map(|(weight, near_column)| *weight * self.normals[place(row, *near_column)])
                         .sum::<Vec3>(),
                 );
             }
@@ -80,7 +80,7 @@ impl Normals {
             let beside = &rows[row..=row + 2 * reach as usize];
             for column in 0..width as usize {
                 let mean: Vec3 =
-                    weights.iter().zip(beside).map(|(weight, at)| *weight * once[place(*at, column)]).sum();
+                    weights.iter().zip(beside).map(|(weight, near_row)| *weight * once[place(*near_row, column)]).sum();
                 twice.push(mean.try_normalize().unwrap_or(Vec3::Z));
             }
         }

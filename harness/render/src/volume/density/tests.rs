@@ -74,7 +74,7 @@ fn a_voxel_beside_matter_has_its_density_too() {
             let mut free = 0;
             for (index, found) in found.into_iter().enumerate() {
                 let voxel = grid.voxel(index);
-                let beside = |of: &UVec3| (voxel.as_ivec3() - of.as_ivec3()).abs().max_element() <= 1;
+                let beside = |other: &UVec3| (voxel.as_ivec3() - other.as_ivec3()).abs().max_element() <= 1;
                 if matter.iter().any(beside) {
                     let wanted = density.at(grid.centre(voxel));
                     assert!((found - wanted).abs() <= tolerance, "{cells} {voxel}: {found} for {wanted}");

@@ -81,7 +81,7 @@ impl Lone {
 
     /// Filled volume of each voxel, as a share of it.
     fn volumes(&self) -> Vec<f64> {
-        self.floats(self.reactions).chunks_exact(4).map(|of| of[3]).collect()
+        self.floats(self.reactions).chunks_exact(4).map(|reaction| reaction[3]).collect()
     }
 
     /// Returns each node's position.
@@ -113,7 +113,7 @@ impl Lone {
         self.executor.write_buffer(self.right, bytemuck::cast_slice(&spread)).expect("written");
         self.executor.run(|_, _| {}).expect("run");
         let all = self.floats(self.fluence);
-        [0, 1, 2].map(|channel| all.chunks_exact(4).map(|of| of[channel]).collect())
+        [0, 1, 2].map(|channel| all.chunks_exact(4).map(|voxel| voxel[channel]).collect())
     }
 
     /// Returns the sums of the magnitudes of the equations' terms over the right side, both as root mean squares.
@@ -197,13 +197,13 @@ fn conjugate_gradients(lone: &Lone, right: &[f64], most: f64) -> usize {
             above.into_iter().chain(below)
         })
     };
-    let own = |index: usize| reactions[4 * index] + neighbours(index).map(|(_, face)| face).sum::<f64>();
-    let owns: Vec<f64> = (0..right.len()).map(own).collect();
+    let factor = |index: usize| reactions[4 * index] + neighbours(index).map(|(_, face)| face).sum::<f64>();
+    let owns: Vec<f64> = (0..right.len()).map(factor).collect();
     let active: Vec<usize> = (0..right.len()).filter(|index| owns[*index] > 0.0).collect();
     let dot = |a: &[f64], b: &[f64]| active.iter().map(|index| a[*index] * b[*index]).sum::<f64>();
-    let scaled = |of: &[f64]| {
-        let mut scaled = vec![0.0; of.len()];
-        active.iter().for_each(|index| scaled[*index] = of[*index] / owns[*index]);
+    let scaled = |residual: &[f64]| {
+        let mut scaled = vec![0.0; residual.len()];
+        active.iter().for_each(|index| scaled[*index] = residual[*index] / owns[*index]);
         scaled
     };
     let mut left = right.to_vec();
@@ -240,8 +240,8 @@ fn in_ball(radius: f64, distance: f64, (extinction, absorbed): (f64, f64)) -> f6
     let kappa = extinction * (3.0 * absorbed).sqrt();
     let (sinh, cosh) = ((kappa * r).sinh(), (kappa * r).cosh());
     let factor = 1.0 / (sinh / r + milne * (kappa * cosh / r - sinh / (r * r)));
-    let at = if s < 1e-9 { kappa } else { (kappa * s).sinh() / s };
-    (1.0 - factor * at) / (absorbed * extinction)
+    let profile = if s < 1e-9 { kappa } else { (kappa * s).sinh() / s };
+    (1.0 - factor * profile) / (absorbed * extinction)
 }
 
 /// The right side for light that begins at a rate of 1 per volume.
@@ -321,13 +321,13 @@ fn light_goes_both_ways_alike_and_never_grows_with_absorption() {
     let lone = Lone::of(sphere(1.0, 64), 32, (6.0, 0.01), 14);
     let filled: Vec<usize> =
         (0..).zip(lone.volumes()).filter(|(_, volume)| *volume > 0.0).map(|(index, _)| index).collect();
-    let at = |share: f64| filled[(share * filled.len() as f64) as usize];
+    let voxel = |share: f64| filled[(share * filled.len() as f64) as usize];
     let from = |source: usize| {
         let mut right = vec![0.0; lone.grid.count()];
         right[source] = 1.0;
         lone.solve(&right)
     };
-    for (one, other) in [(at(0.01), at(0.6)), (at(0.3), at(0.99)), (at(0.5), at(0.51))] {
+    for (one, other) in [(voxel(0.01), voxel(0.6)), (voxel(0.3), voxel(0.99)), (voxel(0.5), voxel(0.51))] {
         let (there, back) = (from(one)[other], from(other)[one]);
         assert!((there / back - 1.0).abs() < 1e-3 && there > 0.0, "{one}, {other}: {there} {back}");
     }
@@ -417,13 +417,13 @@ fn the_flux_limiter_keeps_the_flux_below_the_fluence() {
 #[test]
 fn a_limited_frame_does_not_depend_on_the_one_before() {
     let options = DiffusionOptions::default();
-    let of = || Lone::with(sphere(1.0, 64), 32, (0.5, 0.01), (options, true));
-    let lone = of();
+    let fresh = || Lone::with(sphere(1.0, 64), 32, (0.5, 0.01), (options, true));
+    let lone = fresh();
     let all = everywhere(&lone, 0.5);
     let mut one = vec![0.0; all.len()];
     one[(0..).zip(&all).find(|(_, load)| **load > 0.0).map(|(index, _)| index).expect("a cell")] = 1.0;
     lone.solve(&one);
     // What the device adds up in another order.
-    let furthest = lone.solve(&all).iter().zip(of().solve(&all)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let furthest = lone.solve(&all).iter().zip(fresh().solve(&all)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(furthest < 1e-6, "{furthest}");
 }

@@ -155,7 +155,7 @@ impl Solver {
             // The pass back. Whichever of the two comes last, the costs are in their buffer.
             let exchanged: Vec<(u32, Bound)> = resources
                 .iter()
-                .map(|(binding, of)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *of))
+                .map(|(binding, resource)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *resource))
                 .collect();
             let group = vec![builder.bind(self.pass, 0, &exchanged)];
             turns.extend([next, builder.dispatch(self.pass, group, indirect)]);

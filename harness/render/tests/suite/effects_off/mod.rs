@@ -33,11 +33,11 @@ fn parse(source: &str) -> Module {
 /// Returns the entry points that run together: each fragment entry point with the vertex entry
 /// point, each compute entry point alone.
 fn passes(module: &Module) -> Vec<Vec<String>> {
-    let of = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
-    let fragments = of(ShaderStage::Fragment).flat_map(|fragment| {
-        of(ShaderStage::Vertex).map(|vertex| vec![vertex.name.clone(), fragment.name.clone()]).collect::<Vec<_>>()
+    let entries = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
+    let fragments = entries(ShaderStage::Fragment).flat_map(|fragment| {
+        entries(ShaderStage::Vertex).map(|vertex| vec![vertex.name.clone(), fragment.name.clone()]).collect::<Vec<_>>()
     });
-    fragments.chain(of(ShaderStage::Compute).map(|kernel| vec![kernel.name.clone()])).collect()
+    fragments.chain(entries(ShaderStage::Compute).map(|kernel| vec![kernel.name.clone()])).collect()
 }
 
 /// Values of overrides that enumerate forms.
@@ -152,8 +152,8 @@ fn an_effect_that_is_off_leaves_the_recipe_without_it() {
         let mut tried = choices(&whole);
         let others = tried.split_off(3);
         tried.extend(lapidary_testing::sampled(others, ONE_IN));
-        let of = |effect: &String| differences(&whole, &cut(source, &[effect]), effect, &tried);
-        let found = effects.iter().map(|effect| (effect, of(effect)));
+        let differences_without = |effect: &String| differences(&whole, &cut(source, &[effect]), effect, &tried);
+        let found = effects.iter().map(|effect| (effect, differences_without(effect)));
         found
             .flat_map(|(effect, found)| {
                 found.into_iter().map(move |it| format!("{} without {effect}: {it}", recipe.name))

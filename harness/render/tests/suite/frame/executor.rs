@@ -160,17 +160,17 @@ impl Host<'_> {
         let entry_point = |place: usize| Some(string(&row["entries"][place]));
         if row["kind"] == "compute" {
             let (label, layout, entry_point, compilation_options, cache) = (None, None, entry_point(0), options, None);
-            let of = ComputePipelineDescriptor { label, layout, module, entry_point, compilation_options, cache };
-            return Pipeline::Compute(self.device.create_compute_pipeline(&of));
+            let kernel = ComputePipelineDescriptor { label, layout, module, entry_point, compilation_options, cache };
+            return Pipeline::Compute(self.device.create_compute_pipeline(&kernel));
         }
-        let component = |of: &str| BlendComponent {
+        let component = |channel: &str| BlendComponent {
             src_factor: BlendFactor::One,
             dst_factor: BlendFactor::One,
-            operation: named(&row["blend"][of], &[("add", BlendOperation::Add), ("min", BlendOperation::Min)]),
+            operation: named(&row["blend"][channel], &[("add", BlendOperation::Add), ("min", BlendOperation::Min)]),
         };
         let blends = row["blend"].is_object();
         let blend = blends.then(|| BlendState { color: component("color"), alpha: component("alpha") });
-        let target = |of| Some(ColorTargetState { blend, ..format(of).into() });
+        let target = |value| Some(ColorTargetState { blend, ..format(value).into() });
         let targets: Vec<_> = list(&row["targets"]).iter().map(target).collect();
         let depth_stencil = row["depth"].as_str().map(|_| DepthStencilState {
             format: format(&row["depth"]),
@@ -271,10 +271,11 @@ impl Host<'_> {
             self.texture(texture).create_view(&TextureViewDescriptor { base_array_layer: layer, ..layers })
         };
         let targets = list(&row["targets"]);
-        let views: Vec<_> = targets.iter().map(|of| layer(&of["texture"], number(&of["layer"]))).collect();
-        let attachment = |(of, view): (&Value, _)| {
-            let clear =
-                of["clear"].as_array().map(|of| [0, 1, 2, 3].map(|channel| of[channel].as_f64().expect("a number")));
+        let views: Vec<_> = targets.iter().map(|target| layer(&target["texture"], number(&target["layer"]))).collect();
+        let attachment = |(target, view): (&Value, _)| {
+            let clear = target["clear"]
+                .as_array()
+                .map(|color| [0, 1, 2, 3].map(|channel| color[channel].as_f64().expect("a number")));
             let load = clear.map_or(LoadOp::Load, |[r, g, b, a]| LoadOp::Clear(Color { r, g, b, a }));
             let ops = Operations { load, store: StoreOp::Store };
             Some(RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })

@@ -53,8 +53,8 @@ fn about(point: Vec3) -> impl Iterator<Item = UVec3> {
 /// about it.
 fn looked_up(case: &Case, costs: &[f32], normal: Vec3) -> f32 {
     let point = Vec3::splat(32.0) + RADIUS * normal;
-    let own = seed(normal.z, case.extinction, 0.0);
-    about(point).fold(own, |least, voxel| {
+    let own_cost = seed(normal.z, case.extinction, 0.0);
+    about(point).fold(own_cost, |least, voxel| {
         let offset = (point - case.grid.centre(voxel)).length();
         relax(least, through(costs[case.grid.index(voxel)], case.extinction, offset), 0.0)
     })

@@ -38,9 +38,9 @@ impl Case {
             (0..6).map(|_| (0.5 * side * (draws.in_cube() + 1.0), side * draws.between(0.15, 0.4))).collect();
         let holes: Vec<u32> = (0..(cells as usize).pow(3)).map(|_| draws.below(12)).collect();
         let mut case = Self::of(cells, 0.5, |voxel| {
-            let at = voxel.as_vec3() + 0.5;
+            let centre = voxel.as_vec3() + 0.5;
             let index = voxel.x + cells * (voxel.y + cells * voxel.z);
-            holes[index as usize] > 0 && balls.iter().any(|(middle, radius)| at.distance(*middle) < *radius)
+            holes[index as usize] > 0 && balls.iter().any(|(middle, radius)| centre.distance(*middle) < *radius)
         });
         for index in 0..case.matter.len() {
             if heterogeneous {

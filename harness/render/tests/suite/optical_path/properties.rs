@@ -90,11 +90,10 @@ fn turned(case: &Case, symmetry: usize) -> (Case, Vec<usize>) {
     let order = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]][symmetry / 8];
     let last = case.grid.cells as i32 - 1;
     let place = |voxel: UVec3| {
-        let at = voxel.as_ivec3().to_array();
-        let moved: [i32; 3] =
-            std::array::from_fn(
-                |axis| if symmetry >> axis & 1 == 1 { last - at[order[axis]] } else { at[order[axis]] },
-            );
+        let position = voxel.as_ivec3().to_array();
+        let moved: [i32; 3] = std::array::from_fn(|axis| {
+            if symmetry >> axis & 1 == 1 { last - position[order[axis]] } else { position[order[axis]] }
+        });
         case.grid.index(IVec3::from(moved).as_uvec3())
     };
     let places: Vec<usize> = (0..case.matter.len()).map(|index| place(case.grid.voxel(index))).collect();

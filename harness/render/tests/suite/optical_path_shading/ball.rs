@@ -90,9 +90,9 @@ fn of_grid(point: DVec3, grid: VoxelGrid, cost: &dyn Fn(DVec3) -> f64) -> f64 {
     // The way from the best node about the point to the point is straight too, but not along the
     // chord.
     let origin = grid.origin.as_dvec3() / RADIUS;
-    let own = ((point - origin) / voxel).floor();
+    let cell = ((point - origin) / voxel).floor();
     let nodes = (0..27).map(|index| DVec3::new(f64::from(index % 3), f64::from(index / 3 % 3), f64::from(index / 9)));
-    let nodes = nodes.map(|node| origin + (own + node - 0.5) * voxel).filter(|node| node.length() < 1.0);
+    let nodes = nodes.map(|node| origin + (cell + node - 0.5) * voxel).filter(|node| node.length() < 1.0);
     let detours = nodes.map(|node| (point - node).length() - (point - node).dot(way));
     solver + DEPTH * detours.fold(f64::INFINITY, f64::min)
 }
@@ -124,19 +124,19 @@ impl Errors {
         for (position, found) in on_the_ball(&scene, &picture).into_iter().step_by(every) {
             assert!(found.x == found.y && found.y == found.z, "grey: {found}");
             let point = position.normalize();
-            let (found, wanted, own) = (-(PI * found.x / brightest).ln(), cost(point), entering(&light, point));
+            let (found, wanted, own_light) = (-(PI * found.x / brightest).ln(), cost(point), entering(&light, point));
             if wanted > DEEPEST {
                 continue;
             }
-            let own_is_cheapest = -(own / brightest).ln() <= wanted + 1e-9;
+            let own_is_cheapest = -(own_light / brightest).ln() <= wanted + 1e-9;
             squares += (found - wanted).powi(2);
             theory += if own_is_cheapest { 0.0 } else { of_grid(point, grid, cost).powi(2) };
             count += 1;
-            if own_is_cheapest && own >= 0.1 * brightest {
+            if own_is_cheapest && own_light >= 0.1 * brightest {
                 worst_lit = larger(worst_lit, ((wanted - found).exp() - 1.0).abs());
                 lit += 1;
             }
-            dark += usize::from(own == 0.0);
+            dark += usize::from(own_light == 0.0);
         }
         assert!(lit * every > 1000 && dark * every > 1500, "{lit} lit, {dark} dark of {count} pixels");
         let [nats, theory] = [squares, theory].map(|sum| (sum / f64::from(count)).sqrt());

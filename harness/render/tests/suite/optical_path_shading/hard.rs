@@ -106,7 +106,7 @@ fn light_that_grazes_everywhere_lights_nothing() {
 
 #[test]
 fn extinctions_of_every_size_have_their_limit() {
-    let of = |extinction_scale: f32| {
+    let radiances = |extinction_scale: f32| {
         let scene = ball(8.0, vec![sun()]);
         let picture =
             draw(&scene, &Settings { optical_path: OpticalPathOptions { extinction_scale }, ..settings("godunov-32") });
@@ -115,14 +115,14 @@ fn extinctions_of_every_size_have_their_limit() {
     };
     // No loss: all is as bright as the brightest voxel.
     for scale in [0.0, 1e-8] {
-        for (_, found) in of(scale) {
+        for (_, found) in radiances(scale) {
             assert!((PI * found.x / 2.0 - 1.0).abs() < 1e-3, "{scale}: {found}");
         }
     }
     // No transmission: Lambert's law.
     let toward = Vec3::new(-0.8, 0.6, 0.0).as_dvec3();
     for scale in [1e8, 1e30, f32::MAX] {
-        for (position, found) in of(scale) {
+        for (position, found) in radiances(scale) {
             let wanted = 2.0 * (position / RADIUS).dot(toward).max(0.0);
             assert!((PI * found.x - wanted).abs() < 3e-3, "{scale}: {found} {wanted}");
         }

@@ -65,12 +65,12 @@ fn another_light_darkens_no_pixel() {
 #[test]
 fn each_colour_goes_its_own_way() {
     let extinction = Vec3::new(0.1, 0.3, 0.9);
-    let of = |extinction: Vec3| with_medium(vec![sun(), lamp()], |_| Medium::isotropic(extinction, Vec3::ZERO));
+    let scene_of = |extinction: Vec3| with_medium(vec![sun(), lamp()], |_| Medium::isotropic(extinction, Vec3::ZERO));
     // The least costs of this rung are the same to the bit for any order of voxels.
     let rung = "tiled-26-64";
-    let colored = draw(&of(extinction), &settings(rung));
+    let colored = draw(&scene_of(extinction), &settings(rung));
     for (channel, grey) in extinction.to_array().into_iter().enumerate() {
-        let grey = draw(&of(Vec3::splat(grey)), &settings(rung));
+        let grey = draw(&scene_of(Vec3::splat(grey)), &settings(rung));
         let mut seen = 0;
         for (colored, grey) in colored.linear.iter().zip(&grey.linear) {
             assert_eq!(colored[channel].to_bits(), grey[channel].to_bits(), "channel {channel}: {colored:?} {grey:?}");
@@ -83,13 +83,13 @@ fn each_colour_goes_its_own_way() {
 /// Checks light of a single colour, and a light of each colour from its own side.
 #[test]
 fn coloured_lights_do_not_mix() {
-    let of = |lights: Vec<Light>| draw(&ball(4.0, lights), &settings("tiled-26-32"));
+    let picture_of = |lights: Vec<Light>| draw(&ball(4.0, lights), &settings("tiled-26-32"));
     let from = |toward: Vec3, irradiance: Vec3| Light::Directional { toward, irradiance };
     let [x, y, z] = [Vec3::NEG_X, Vec3::Y, Vec3::Z];
-    let all = of(vec![from(x, Vec3::X), from(y, 0.5 * Vec3::Y), from(z, 0.25 * Vec3::Z)]);
+    let all = picture_of(vec![from(x, Vec3::X), from(y, 0.5 * Vec3::Y), from(z, 0.25 * Vec3::Z)]);
     for (channel, light) in [from(x, Vec3::X), from(y, 0.5 * Vec3::Y), from(z, 0.25 * Vec3::Z)].into_iter().enumerate()
     {
-        let one = of(vec![light]);
+        let one = picture_of(vec![light]);
         for (all, one) in all.linear.iter().zip(&one.linear).filter(|(_, one)| one[3] == 1.0) {
             assert_eq!(all[channel].to_bits(), one[channel].to_bits(), "channel {channel}");
             assert!((0..3).all(|other| other == channel || one[other] == 0.0), "{one:?}");
@@ -132,11 +132,11 @@ fn dense_matter_throws_a_shadow_inside() {
     let size = UVec3::splat(10);
     let wall = DensityGrid::new(Vec3::splat(-10.0), Vec3::splat(10.0), size, densities).expect("a grid");
     let light = Light::Directional { toward: Vec3::NEG_X, irradiance: Vec3::ONE };
-    let of = |density: Density| {
+    let picture_of = |density: Density| {
         let scene = with_medium(vec![light], |medium| Medium { density, ..medium }).seen_from(90.0, 60.0);
         draw(&scene, &settings("godunov-64"))
     };
-    let (walled, free) = (of(Density::Grid(Arc::new(wall))), of(grid(vec![0.25; 24])));
+    let (walled, free) = (picture_of(Density::Grid(Arc::new(wall))), picture_of(grid(vec![0.25; 24])));
     let mut darker = 0;
     for (walled, free) in walled.linear.iter().zip(&free.linear).filter(|(_, free)| free[3] == 1.0) {
         assert!(walled[0] <= 1.01 * free[0], "{walled:?} {free:?}");

@@ -81,14 +81,14 @@ fn compare(what: &str, scene: &Scene, light: &Light, band: f64) -> [u32; 3] {
 #[test]
 fn a_ring_throws_the_shadow_on_itself_that_rays_find() {
     let position = Vec3::new(30.0, 7.0, 21.0);
-    let at = |toward: Vec3| {
+    let spot_toward = |toward: Vec3| {
         let direction = (toward - position).normalize();
         Light::Spot { position, direction, intensity: Vec3::splat(1500.0), inner_angle: 0.3, outer_angle: 0.5 }
     };
     let lights = [
         ("sun", Light::Directional { toward: Vec3::new(0.8, 0.25, 0.55).normalize(), irradiance: Vec3::ONE }),
         ("lamp", Light::Point { position, intensity: Vec3::splat(1500.0) }),
-        ("spot", at(Vec3::ZERO)),
+        ("spot", spot_toward(Vec3::ZERO)),
         // Within the scene: six views.
         ("lamp beside the tube", Light::Point { position: Vec3::new(11.3, 2.0, 11.3), intensity: Vec3::splat(300.0) }),
     ];

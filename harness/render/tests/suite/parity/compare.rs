@@ -119,18 +119,18 @@ pub fn compare(
         let at_an_edge = beside.iter().any(|other| other.is_none_or(|other| other.triangle != seen.triangle));
         let [own_x, own_y, own_z, _] = positions.linear[index];
         let in_stone = |seen: SurfacePoint| SurfacePoint { position: moved_by(to_stone, seen.position), ..seen };
-        let own = SurfacePoint { position: Vec3::new(own_x, own_y, own_z), ..seen };
+        let shown = SurfacePoint { position: Vec3::new(own_x, own_y, own_z), ..seen };
         let points = if at_an_edge {
             [Some(seen)].into_iter().chain(beside).flatten().map(in_stone).collect::<Vec<_>>()
         } else {
-            let place = viewer.place(moved_by(to_world, own.position));
+            let place = viewer.place(moved_by(to_world, shown.position));
             // A NaN counts as far away.
             parity.misplaced = larger(parity.misplaced, (place.x - x).abs());
             parity.misplaced = larger(parity.misplaced, (place.y - y).abs());
-            let (right, up) = (own.position - moved_by(to_stone, eye)).normalize().any_orthonormal_pair();
+            let (right, up) = (shown.position - moved_by(to_stone, eye)).normalize().any_orthonormal_pair();
             let moved = [right + up, right - up, up - right, -right - up];
-            let points = moved.map(|by| SurfacePoint { position: own.position + drift * by, ..own });
-            [own].into_iter().chain(points).collect()
+            let points = moved.map(|by| SurfacePoint { position: shown.position + drift * by, ..shown });
+            [shown].into_iter().chain(points).collect()
         };
         let around: Vec<Pixel> = points.into_iter().map(|point| shading.pixel(&stone, point, eye)).collect();
         let low = around.iter().map(|pixel| pixel.radiance).fold(Vec3::INFINITY, Vec3::min);

@@ -46,18 +46,18 @@ fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
     let table = bounds(&scene.objects[0]);
     assert!(table.max.y.abs() < 1e-5);
     for (k, object) in scene.objects.iter().enumerate().skip(1) {
-        let own = bounds(object);
-        let stands = (0.01..0.03).contains(&own.min.y);
-        let hangs = own.min.y > 3.9;
+        let extent = bounds(object);
+        let stands = (0.01..0.03).contains(&extent.min.y);
+        let hangs = extent.min.y > 3.9;
         let above = ["prism_chain", "post", "arm", "hook"].contains(&object.name.as_str());
-        assert_eq!((stands, hangs), (!above, above), "{own:?}");
+        assert_eq!((stands, hangs), (!above, above), "{extent:?}");
         // At some distance from the table's edge.
-        let margin = (own.min - table.min).min(table.max - own.max);
+        let margin = (extent.min - table.min).min(table.max - extent.max);
         assert!(margin.x > 10.0 && margin.z > 10.0, "{}: {margin}", object.name);
         for other in &scene.objects[k + 1..] {
             let others = bounds(other);
-            let apart = own.max.cmplt(others.min).any() || others.max.cmplt(own.min).any();
-            assert!(apart, "{} and {}", object.name, other.name);
+            let are_disjoint = extent.max.cmplt(others.min).any() || others.max.cmplt(extent.min).any();
+            assert!(are_disjoint, "{} and {}", object.name, other.name);
         }
     }
     // The stones rest on a facet: as many vertices touch the table as the facet has corners.

@@ -32,8 +32,8 @@ fn the_head_has_its_face_the_right_way_up() {
     assert_eq!([color, normal].map(|t| (t.texels.width(), t.texels.height())), [(1024, 1024); 2]);
     // Red lips and dark brows on skin, and none of it if the picture stood on its head.
     let is_right = |texture: &Texture| {
-        let at = |place| seen(mesh, texture, place);
-        let [lips, brow, forehead, cheek] = [[-0.1, 0.45], [0.79, 2.03], [-0.1, 2.86], [-0.9, 0.9]].map(at);
+        let color_at = |place| seen(mesh, texture, place);
+        let [lips, brow, forehead, cheek] = [[-0.1, 0.45], [0.79, 2.03], [-0.1, 2.86], [-0.9, 0.9]].map(color_at);
         let skin = [forehead, cheek].iter().all(|color| color.x < 2.0 * color.y && color.y > 0.3);
         [skin, lips.x > 3.0 * lips.y, brow.y < 0.4 * forehead.y]
     };

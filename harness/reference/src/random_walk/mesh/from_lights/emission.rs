@@ -123,8 +123,8 @@ mod tests {
             }
             // The disc is perpendicular to each ray, so the irradiances add up.
             let wanted: DVec3 = lights.iter().map(|light| light.arrival(centre).irradiance).sum();
-            let apart = (received / wanted - 1.0).abs().max_element();
-            assert!(apart < 0.05, "{lights:?}: {received} {wanted}");
+            let error = (received / wanted - 1.0).abs().max_element();
+            assert!(error < 0.05, "{lights:?}: {received} {wanted}");
         }
     }
 

@@ -236,7 +236,7 @@ pub(super) fn layers() -> Vec<(Mesh, Medium)> {
 #[test]
 fn light_is_weakened_by_all_matter_on_its_way() {
     let [first, second] = [DVec3::new(0.11, 0.2, 0.35), DVec3::new(0.3, 0.1, 0.0)];
-    let at = |z: f32| Light::Point { position: Vec3::new(0.125, 0.25, z), intensity: Vec3::ONE };
+    let lamp = |z: f32| Light::Point { position: Vec3::new(0.125, 0.25, z), intensity: Vec3::ONE };
     // On its axis, a spot is a point light.
     let spot = |direction| Light::Spot {
         position: Vec3::new(0.125, 0.25, 5.0),
@@ -249,12 +249,12 @@ fn light_is_weakened_by_all_matter_on_its_way() {
         (spot(Vec3::NEG_Z), 4.75, 1.75 * first + second),
         (sun(DVec3::Z), 1.0, 2.75 * first + second),
         (sun(-DVec3::Z), 1.0, 0.25 * first),
-        (at(10.0), 9.75, 2.75 * first + second),
-        (at(5.0), 4.75, 1.75 * first + second),
-        (at(3.5), 3.25, 0.75 * first + second),
-        (at(2.5), 2.25, 0.75 * first + 0.5 * second),
-        (at(1.5), 1.25, 0.75 * first),
-        (at(0.5), 0.25, 0.25 * first),
+        (lamp(10.0), 9.75, 2.75 * first + second),
+        (lamp(5.0), 4.75, 1.75 * first + second),
+        (lamp(3.5), 3.25, 0.75 * first + second),
+        (lamp(2.5), 2.25, 0.75 * first + 0.5 * second),
+        (lamp(1.5), 1.25, 0.75 * first),
+        (lamp(0.5), 0.25, 0.25 * first),
     ];
     for (light, distance, depth) in cases {
         let scene = scene(layers(), vec![light]);

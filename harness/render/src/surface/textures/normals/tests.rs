@@ -45,9 +45,9 @@ fn layers_are_the_image_and_a_blur_for_each_colour() {
 #[test]
 fn slopes_are_scaled_before_they_are_normals() {
     let texture = waves(32, 8.0);
-    let of = |scale: f32| Normals::of(&texture, scale).normals;
-    assert!(of(0.0).iter().all(|normal| normal.distance(Vec3::Z) < 1e-6));
-    for (one, twice) in of(1.0).iter().zip(of(2.0)) {
+    let scaled = |scale: f32| Normals::of(&texture, scale).normals;
+    assert!(scaled(0.0).iter().all(|normal| normal.distance(Vec3::Z) < 1e-6));
+    for (one, twice) in scaled(1.0).iter().zip(scaled(2.0)) {
         assert!((twice.x / twice.z - 2.0 * one.x / one.z).abs() < 1e-4, "{one} {twice}");
     }
 }

@@ -64,8 +64,8 @@ fn mirror(
             continue;
         }
         let voxel = inside.floor().as_uvec3().min(UVec3::splat(CELLS - 1));
-        let own = grid.index(voxel);
-        if !matter[own] {
+        let lit_voxel = grid.index(voxel);
+        if !matter[lit_voxel] {
             continue;
         }
         let arrival = lights[view.light as usize].arrival(position.as_dvec3());
@@ -78,7 +78,7 @@ fn mirror(
             let index = grid.index(near.as_uvec3());
             if matter[index] {
                 let offset = position.distance(grid.centre(near.as_uvec3()));
-                let cost = seed(share, 0.5 * (extinction(own) + extinction(index)), offset);
+                let cost = seed(share, 0.5 * (extinction(lit_voxel) + extinction(index)), offset);
                 costs[index] = costs[index].min(cost);
             }
         }

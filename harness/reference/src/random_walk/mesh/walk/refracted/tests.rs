@@ -50,8 +50,8 @@ fn every_path_is_found_and_obeys_snells_law() {
                     let normal = bodies.triangles(0).nth(path.face).map_or(DVec3::ZERO, |(_, normal)| *normal);
                     let along = |direction: DVec3| direction - direction.dot(normal) * normal;
                     let outside = toward(source, path.crossing);
-                    let apart = along(outside).distance(index * along(path.direction));
-                    assert!(apart < 1e-7, "{source:?} {index}: {apart}");
+                    let difference = along(outside).distance(index * along(path.direction));
+                    assert!(difference < 1e-7, "{source:?} {index}: {difference}");
                     assert!((path.direction.length() - 1.0).abs() < 1e-12 && path.distance <= limit);
                     assert!(path.crossing.distance(position + path.distance * path.direction) < 1e-12);
                 }
