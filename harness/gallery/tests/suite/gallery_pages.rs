@@ -24,7 +24,7 @@ const MOST_FIRST: u64 = 300_000;
 /// Most bytes of the site.
 const MOST_SITE: u64 = 30_000_000;
 /// Unless the suite is run whole, one page in this many is opened.
-const ONE_IN: u64 = 12;
+const ONE_IN: u64 = 24;
 
 /// Attributes with an address.
 const ADDRESSES: [&str; 4] = ["href", "src", "data-src", "poster"];
@@ -364,14 +364,15 @@ fn loaded_sources_compile() {
     assert!(names.len() >= least, "{} sources, of {least} modules, recipes and rungs", names.len());
 }
 
-/// A handful of pages: one of each folder, every live page, whose controls differ, and some more by the suite's seed.
+/// A handful of pages: one of each folder, a live page or two, whose controls differ, and some more by the suite's seed.
 fn some_pages() -> Vec<&'static str> {
     let site = site();
     let mut chosen: BTreeSet<&str> = BTreeSet::from(["index.html"]);
     for folder in ["guides/", "live/", "modules/", "recipes/", "techniques/"] {
         chosen.insert(site.first(folder));
     }
-    chosen.extend(site.pages.keys().map(String::as_str).filter(|path| path.starts_with("live/")));
+    let live = site.pages.keys().map(String::as_str).filter(|path| path.starts_with("live/"));
+    chosen.extend(lapidary_testing::sampled(live, 4));
     chosen.extend(lapidary_testing::sampled(site.pages.keys().map(String::as_str), ONE_IN));
     chosen.into_iter().collect()
 }

@@ -344,7 +344,7 @@ fn stages_of_a_recipe_link() {
     }
     let folder = folder();
     let mut linked = 0;
-    for recipe in RECIPES {
+    for recipe in lapidary_testing::sampled(RECIPES, 3) {
         let source = recipe.compose();
         let (ir, _) = dispatch::parse(&source, recipe.name).expect("valid WGSL");
         let in_stage = |stage| ir.entry_points.iter().filter(move |point| point.stage == stage);
@@ -370,7 +370,7 @@ fn stages_of_a_recipe_link() {
             assert_eq!(found, Ok(()), "{}::{entry}", recipe.name);
         }
     }
-    assert!(linked > 15, "{linked}");
+    assert!(linked > 15 || !lapidary_testing::whole(), "{linked}");
 }
 
 #[test]

@@ -20,6 +20,9 @@ use std::time::Instant;
 /// Variable with the value `required` if a missing Chromium is a failure.
 const VARIABLE: &str = "LAPIDARY_CHROMIUM";
 
+/// Unless the suite is run whole, one function in this many runs there.
+const ONE_IN: u64 = 3;
+
 /// Number of random programs that are specialised.
 const PROGRAMS: u64 = 300;
 
