@@ -547,15 +547,17 @@ fn nodes() -> Vec<Formula> {
                 _ => draws.between(0.0, 1.0),
             };
             let corner = if draws.below(8) == 0 { draws.bits() } else { draws.below(8) };
-            let share = match draws.below(6) {
+            let fraction = match draws.below(6) {
                 0 => draws.pick(&[Vec3::ZERO, Vec3::ONE]),
                 _ => Vec3::new(place(draws), place(draws), place(draws)),
             };
-            (share, corner, length(draws))
+            (fraction, corner, length(draws))
         })
-        .edge("at the corner", |(share, corner, volume)| share == Vec3::ZERO && corner == 0 && volume > 0.0)
-        .edge("at the opposite one", |(share, corner, volume)| share == Vec3::ONE && corner == 0 && volume > 0.0)
-        .edge("the last corner", |(share, corner, volume)| share.min_element() > 0.0 && corner == 7 && volume > 0.0)
+        .edge("at the corner", |(fraction, corner, volume)| fraction == Vec3::ZERO && corner == 0 && volume > 0.0)
+        .edge("at the opposite one", |(fraction, corner, volume)| fraction == Vec3::ONE && corner == 0 && volume > 0.0)
+        .edge("the last corner", |(fraction, corner, volume)| {
+            fraction.min_element() > 0.0 && corner == 7 && volume > 0.0
+        })
         .edge("no matter", |(.., volume)| volume == 0.0)
         .edge("more than three bits", |(_, corner, _)| corner > 7)
         .invariant("at most the volume", |(.., volume), weight: f32| {

@@ -347,7 +347,7 @@ pub fn local_around(cosine_eye: f64, law: f64, gamma: f64, milne: f64, depth: f6
 /// Multiplies the distances from the opposite corner.
 pub fn weight(fraction: DVec3, corner: u32, volume: f64) -> f64 {
     let inside = fraction.clamp(DVec3::ZERO, DVec3::ONE).to_array();
-    let along = |(axis, share): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - share } else { share };
+    let along = |(axis, way): (usize, f64)| if corner & (1 << axis) == 0 { 1.0 - way } else { way };
     let trilinear: f64 = inside.into_iter().enumerate().map(along).product();
     volume * trilinear + volume * f64::from(LEAST_WEIGHT)
 }

@@ -148,8 +148,8 @@ fn abbe() -> Formula {
     .edge("no dispersion", |(_, dispersion, _)| dispersion == 0.0)
     .edge("nothing to disperse", |(index, dispersion, _)| index == 1.0 && dispersion > 0.0)
     .edge("held at 1", |(index, dispersion, wavelength)| index > 1.5 && dispersion > 40.0 && wavelength > 770.0)
-    .invariant("at least 1, and the index itself without dispersion", |(index, dispersion, _), found: f32| {
-        let lack = if dispersion == 0.0 { f64::from(found - index).abs() } else { (1.0 - f64::from(found)).max(0.0) };
+    .invariant("at least 1, and the index itself without dispersion", |(index, dispersion, _), bent: f32| {
+        let lack = if dispersion == 0.0 { f64::from(bent - index).abs() } else { (1.0 - f64::from(bent)).max(0.0) };
         near("lack", lack, 0.0, 0.0)
     })
     .build()

@@ -34,12 +34,12 @@ fn every_column_is_crossed_an_even_number_of_times() {
     for sides in 3..60 {
         let radius = 0.1 * sides as f32;
         let mesh = bipyramid(sides, radius);
-        for place in columns(&mesh, 1.2 * radius) {
+        for point in columns(&mesh, 1.2 * radius) {
             let count = |test: fn(Vec3, Vec3, Vec3, Vec2) -> crate::VoxelizationColumn| {
-                mesh.iter().filter(|[a, b, c]| test(*a, *b, *c, place).inside).count()
+                mesh.iter().filter(|[a, b, c]| test(*a, *b, *c, point).inside).count()
             };
             let exact = count(column);
-            assert!(exact.is_multiple_of(2), "{sides} sides, column {place}: {exact}");
+            assert!(exact.is_multiple_of(2), "{sides} sides, column {point}: {exact}");
             met += usize::from(exact > 0);
             odd_naive += count(column_naive) % 2;
         }

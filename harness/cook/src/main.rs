@@ -5,7 +5,7 @@ mod cli;
 use std::process::ExitCode;
 
 /// Commands that the launcher `./cook` has besides, from programs that stay in the repository.
-const IN_THE_REPOSITORY: [&str; 7] = ["builtins", "cost", "dist", "gallery", "new", "snapshots", "test"];
+const IN_THE_REPOSITORY: [&str; 8] = ["builtins", "cost", "dist", "gallery", "new", "snapshots", "studies", "test"];
 
 fn main() -> ExitCode {
     if let Some(command) = std::env::args().nth(1).filter(|word| IN_THE_REPOSITORY.contains(&word.as_str())) {

@@ -55,7 +55,7 @@ pub fn merging(time: f64) -> Mesh {
     let distance = RADII[0] + RADII[1] + gap;
     // The larger drop moves less.
     let centres = [-distance * RADII[1] / (RADII[0] + RADII[1]), distance * RADII[0] / (RADII[0] + RADII[1])];
-    // Negative inside; `place` is a place along x and a distance from it.
+    // Negative inside; `place` is the way along x, and the distance from the axis.
     let field = |place: DVec2| {
         let [a, b] = [0, 1].map(|k: usize| place.distance(dvec2(centres[k], 0.0)) - RADII[k]);
         let overlap = (WIDTH - (a - b).abs()).max(0.0);

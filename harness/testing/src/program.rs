@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Commands of other programs than `cook`, as the launcher `./cook` has them.
+/// Commands of other programs than `cook`; what `take` has, `cook` has too.
 const PROGRAMS: [(&str, &[&str]); 3] =
     [("ladders", &["cost", "builtins"]), ("gallery", &["gallery"]), ("xtask", &["test", "new", "dist", "snapshots"])];
 

@@ -70,8 +70,13 @@ pub(crate) struct Ran {
 }
 
 impl Executable {
-    /// Runs the tests, and shows what the program prints, all at once when it has ended: other programs run meanwhile.
-    pub(crate) fn run(&self, arguments: &[&str], environment: &[(&str, String)]) -> Result<Ran, Failure> {
+    /// Runs the tests, and shows what the program prints: line by line if it runs alone, else when it has ended.
+    pub(crate) fn run(
+        &self,
+        arguments: &[&str],
+        environment: &[(&str, String)],
+        is_alone: bool,
+    ) -> Result<Ran, Failure> {
         let mut command = Command::new(&self.path);
         command.current_dir(&self.folder).args(arguments).envs(environment.iter().map(|(name, value)| (name, value)));
         // libtest tells a test's time to those who may use what is unstable.
@@ -90,6 +95,10 @@ impl Executable {
             seconds.extend(timed(&String::from_utf8_lossy(&line)));
             said.extend(line);
             said.push(b'\n');
+            if is_alone {
+                let _ = std::io::stdout().lock().write_all(&said);
+                said.clear();
+            }
         }
         let passed = child.wait().map_err(failed)?.success();
         let _ = std::io::stdout().lock().write_all(&said);
@@ -104,8 +113,8 @@ impl Executable {
         Ok(status.map_err(|error| Failure(format!("{}: cannot be run: {error}", self.path.display())))?.success())
     }
 
-    /// Returns a hash of all that the tests depend on: the program itself, in which all Rust and WGSL is, the files and
-    /// programs of the repository that it may read or run, and what is asked of it.
+    /// Returns a hash of all that the tests depend on: the program itself, the files and programs of the repository that it
+    /// may read or run, and what is asked of it.
     pub(crate) fn hash(&self, files: &Files, asked: &impl std::hash::Hash) -> u64 {
         let mut hasher = DefaultHasher::new();
         asked.hash(&mut hasher);
@@ -126,32 +135,43 @@ fn built_when(program: &Path) -> Option<(u64, std::time::SystemTime)> {
     Some((data.len(), data.modified().ok()?))
 }
 
-/// The files that tests may read while they run, each with a hash: all that git knows but for Rust's, which the programs
-/// hold.
+/// Packages whose tests read Rust's sources while they run.
+const READERS: [&str; 2] = ["assay", "xtask"];
+
+/// The files that tests may read while they run, each with a hash.
 pub(crate) struct Files {
     root: PathBuf,
     hashes: Vec<(String, u64)>,
 }
 
 impl Files {
-    /// Reads the files of a repository.
-    pub(crate) fn of(root: &Path) -> std::io::Result<Self> {
+    /// Reads the files that git knows; `None` where it knows none, as in an unpacked archive.
+    pub(crate) fn of(root: &Path) -> std::io::Result<Option<Self>> {
         let mut git = Command::new("git");
         git.arg("-C").arg(root).args(["ls-files", "--cached", "--others", "--exclude-standard", "-z"]);
-        let text = String::from_utf8(git.output()?.stdout).map_err(std::io::Error::other)?;
+        let output = git.output()?;
+        if !output.status.success() {
+            return Ok(None);
+        }
+        let text = String::from_utf8(output.stdout).map_err(std::io::Error::other)?;
         let hash = |file: &str| {
             let mut hasher = DefaultHasher::new();
             std::fs::read(root.join(file)).unwrap_or_default().hash(&mut hasher);
             (file.to_owned(), hasher.finish())
         };
-        let files = text.split('\0').filter(|file| !file.is_empty() && !file.ends_with(".rs"));
-        Ok(Self { root: root.to_owned(), hashes: files.map(hash).collect() })
+        let files = text.split('\0').filter(|file| !file.is_empty());
+        Ok(Some(Self { root: root.to_owned(), hashes: files.map(hash).collect() }))
     }
 
-    /// Those that the tests of a package may read: a mirror's own read none but those of their folder.
+    /// Those that the tests of a package may read: a mirror's own read none but those of their folder, and most read no
+    /// Rust but what their program holds.
     fn below(&self, folder: &Path) -> impl Iterator<Item = &(String, u64)> {
         let is_mirror = folder.parent().is_some_and(|parent| parent.ends_with("crates"));
-        self.hashes.iter().filter(move |(file, _)| !is_mirror || self.root.join(file).starts_with(folder))
+        let reads_rust = READERS.iter().any(|reader| folder.ends_with(reader));
+        let is_read = move |(file, _): &&(String, u64)| {
+            (reads_rust || !file.ends_with(".rs")) && (!is_mirror || self.root.join(file).starts_with(folder))
+        };
+        self.hashes.iter().filter(is_read)
     }
 }
 

@@ -250,7 +250,7 @@ impl Drawn {
             Given {
                 technique: "curvature",
                 flags: given([("--curvature", curvature.is_some())]),
-                draws: |rung, _| matches!(rung, Rung::Diffuse(diffuse) if !diffuse.is_lambert()),
+                draws: |rung, _| matches!(rung, Rung::Diffuse(reflectance) if !reflectance.is_lambert()),
             },
             Given {
                 technique: "optical paths",

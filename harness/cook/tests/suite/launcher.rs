@@ -132,6 +132,9 @@ fn shaders_are_taken_by_the_smallest_program() {
         ("list --json", "take"),
         ("list --materials", "cook"),
         ("list --json --rungs", "cook"),
+        ("list --rung", "cook"),
+        ("help copy", "take"),
+        ("help render", "cook"),
         ("list --help", "cook"),
         ("plan ruby", "cook"),
     ] {
@@ -196,11 +199,27 @@ fn the_help_lists_the_commands_of_every_program() {
     };
     let programs = std::env::current_exe().expect("the test's own path");
     let programs = programs.ancestors().nth(2).expect("the build folder");
+    let clone = Clone::new("exit 0", "echo cook");
+    std::fs::create_dir(clone.at("studies")).expect("made");
+    for program in ["take", "ladders", "gallery", "xtask"] {
+        script(&clone.at(&format!("target/debug/{program}")), &format!("echo {program}"));
+    }
     let mut all = Vec::new();
     for program in ["cook", "ladders", "gallery", "xtask"] {
         let output = Command::new(programs.join(program)).arg("--help").output();
         let output = output.unwrap_or_else(|error| panic!("{program}: {error}; `cargo test --workspace` builds it"));
-        all.extend(listed(&String::from_utf8(output.stdout).expect("UTF-8")));
+        let commands = listed(&String::from_utf8(output.stdout).expect("UTF-8"));
+        // The launcher runs each by the program that has it, or by the smallest.
+        for command in commands.iter().filter(|command| *command != "help") {
+            let smallest = if ["copy", "list"].contains(&command.as_str()) { "take" } else { program };
+            let mut words = vec![command.as_str()];
+            // No device is looked for.
+            if command != "list" {
+                words.splice(..0, ["--adapter", "any"]);
+            }
+            assert_eq!(clone.run(&words).1.trim(), smallest, "{command}");
+        }
+        all.extend(commands);
     }
     all.retain(|word| word != "help");
     // Outside of the workspace, built when they are asked for.

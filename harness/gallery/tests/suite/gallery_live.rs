@@ -71,11 +71,3 @@ fn names(page: &mut Page, key: &str) -> Vec<String> {
     let names = page.evaluate(&format!("Object.keys(gallery.live.manifest.{key})")).expect("a manifest");
     names.as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect()
 }
-
-/// Whether a test that takes long runs: `.ci/run` is content with one canvas, `.ci/full` runs all.
-fn runs_whole(test: &str) -> bool {
-    if !lapidary_testing::whole() {
-        eprintln!("gallery_live: {test}: with LAPIDARY_WHOLE=1");
-    }
-    lapidary_testing::whole()
-}

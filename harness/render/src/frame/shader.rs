@@ -36,12 +36,13 @@ pub struct Shader {
 static PARSED: Mutex<BTreeMap<String, naga::Module>> = Mutex::new(BTreeMap::new());
 
 fn parsed(recipe: &str, source: &str) -> Result<naga::Module, SourceError> {
-    let mut known = PARSED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(module) = known.get(source) {
+    let known = || PARSED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(module) = known().get(source) {
         return Ok(module.clone());
     }
+    // Not under the lock: others may parse other texts meanwhile.
     let (module, _) = parse(source, &format!("recipe {recipe}"))?;
-    known.insert(source.to_owned(), module.clone());
+    known().insert(source.to_owned(), module.clone());
     Ok(module)
 }
 

@@ -52,10 +52,8 @@ fn every_slider_changes_the_picture() {
 
 /// Left of the wipe is one rung, right of it the other.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_wipe_stands_between_two_rungs() {
-    if !super::runs_whole("a_wipe_stands_between_two_rungs") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     let one = shown(&mut page);
     let rung = page.evaluate("gallery.live.state.rung").expect("a state");
@@ -77,10 +75,8 @@ fn a_wipe_stands_between_two_rungs() {
 
 /// An effect is another shader, which the copied text shows, and it compiles.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn an_effect_is_another_shader() {
-    if !super::runs_whole("an_effect_is_another_shader") {
-        return;
-    }
     for scene in some_scenes() {
         let Some(mut page) = running(scene, "") else { return };
         page.grant_clipboard().expect("granted");
@@ -114,10 +110,8 @@ fn an_effect_is_another_shader() {
 
 /// What a visitor sees can be sent to another.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_address_holds_the_state() {
-    if !super::runs_whole("the_address_holds_the_state") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     assert_eq!(page.evaluate("location.hash").expect("an address"), "");
     set(
@@ -183,10 +177,8 @@ fn a_link_says_what_it_asks_for() {
 
 /// What appears by a choice or a press takes no other control's place, and a wipe says why it does nothing.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn no_control_slides_under_a_pointer() {
-    if !super::runs_whole("no_control_slides_under_a_pointer") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     page.grant_clipboard().expect("granted");
     // Within the controls: the window may scroll.
@@ -291,10 +283,8 @@ fn the_wheel_is_the_pages_until_a_click() {
 
 /// By keys, by the mouse, and by the wheel.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_eye_is_moved() {
-    if !super::runs_whole("the_eye_is_moved") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     let before = shown(&mut page);
     let state = "(({ polar, azimuth, distance }) => [polar, azimuth, distance])(gallery.live.state)";
@@ -323,10 +313,8 @@ fn the_eye_is_moved() {
 
 /// One finger turns sideways and scrolls up and down; two turn and zoom. None takes the wheel.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn fingers_turn_zoom_and_scroll() {
-    if !super::runs_whole("fingers_turn_zoom_and_scroll") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     page.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true, "maxTouchPoints": 2 })).expect("a phone");
     page.run("document.querySelector('.live canvas').scrollIntoView({ block: 'center', behavior: 'instant' });")
@@ -440,10 +428,8 @@ fn a_faulty_device_is_not_timed() {
 
 /// The time is the visitor's own, and stands in the plot.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_measured_time_is_drawn_into_the_plot() {
-    if !super::runs_whole("a_measured_time_is_drawn_into_the_plot") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     // One that was stopped is in no other's way.
     page.run(&format!("{MEASURES} gallery.live.set({{}});")).expect("stopped");

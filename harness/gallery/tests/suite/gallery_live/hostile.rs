@@ -171,10 +171,8 @@ fn needs(frame: &Value) -> BTreeMap<&'static str, u64> {
 /// A live page runs on a device of WebGPU's default limits. Half of them are less than its frame needs: it has
 /// three bind groups, and targets of 24 bytes a sample. Then one sentence says what is missing.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_default_limits_are_enough_and_half_of_them_are_not() {
-    if !super::runs_whole("the_default_limits_are_enough_and_half_of_them_are_not") {
-        return;
-    }
     for divisor in [1, 2] {
         let limits: BTreeMap<&str, u64> = DEFAULTS.iter().map(|(name, default)| (*name, default / divisor)).collect();
         let Some(mut page) = started() else { return };
@@ -224,10 +222,8 @@ fn a_lost_device_is_replaced() {
 
 /// A device that is lost again and again is given up, until one asks for it.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_device_that_does_not_last_is_given_up() {
-    if !super::runs_whole("a_device_that_does_not_last_is_given_up") {
-        return;
-    }
     let Some(mut page) = started() else { return };
     let lost = "
         const request = GPUAdapter.prototype.requestDevice;
@@ -265,10 +261,8 @@ fn drop_file(page: &mut Page, name: &str, base64: &str) {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn a_dropped_environment_lights_and_another_file_is_refused() {
-    if !super::runs_whole("a_dropped_environment_lights_and_another_file_is_refused") {
-        return;
-    }
     use base64::Engine as _;
     let base64 = |bytes: &[u8]| base64::prelude::BASE64_STANDARD.encode(bytes);
     let Some(mut page) = running("brilliant", "") else { return };

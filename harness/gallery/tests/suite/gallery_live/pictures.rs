@@ -93,10 +93,8 @@ fn a_wrong_uniform_is_seen() {
 
 /// A turned stone is the renderer's, seen from there.
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn the_eye_goes_where_the_renderer_puts_it() {
-    if !super::runs_whole("the_eye_goes_where_the_renderer_puts_it") {
-        return;
-    }
     let Some(mut page) = running("brilliant", "") else { return };
     let live = live("brilliant");
     let scene = Scene::named("brilliant").expect("built in");
