@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Arguments {
     /// Run only the tests whose names contain this text.
     filter: Option<String>,
-    /// Skip the mutation tests and the slowest of the others: takes about a minute.
+    /// Skip the mutation tests and the slowest of the others: takes about two minutes.
     #[arg(long)]
     quick: bool,
     /// Test everything: no samples, every picture as displayed beyond its linear radiance, every rung, and the
