@@ -10,7 +10,7 @@ use lapidary_cook::formulas;
 use lapidary_cookbook::{Module, modules};
 use lapidary_translate::declarations::{declarations, of_functions, words};
 use lapidary_translate::{Language, TranslateError, library, shader, spirv};
-use lapidary_wgsl::RECIPES;
+use lapidary_wgsl::{RECIPES, Recipe};
 use lapidary_xtask::dist;
 use naga::ShaderStage;
 use rayon::prelude::*;
@@ -344,7 +344,7 @@ fn stages_of_a_recipe_link() {
     }
     let folder = folder();
     let mut linked = 0;
-    let (staged, others): (Vec<_>, Vec<_>) = RECIPES
+    let (staged, others): (Vec<&Recipe>, Vec<_>) = RECIPES
         .iter()
         .partition(|recipe| recipe.compose().contains("@vertex") && recipe.compose().contains("@fragment"));
     for recipe in [staged, others].into_iter().flat_map(|recipes| lapidary_testing::sampled(recipes, 3)) {
