@@ -231,6 +231,15 @@ fn packages(package: &str, features: &[&str], edges: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
+/// The studies' own lock file follows the crates of the workspace, and their versions.
+#[test]
+fn the_studies_are_locked() {
+    let mut command = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(["tree", "--manifest-path", "studies/Cargo.toml", "--offline", "--locked"]).current_dir(root());
+    let output = command.output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// Users of the libraries take on no more packages than the READMEs state, and none that a C or C++
 /// compiler builds.
 #[test]
