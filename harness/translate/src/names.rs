@@ -196,6 +196,14 @@ mod tests {
     }
 
     #[test]
+    fn a_number_stays_where_a_global_has_the_name() {
+        let text = "const float limit = 2.0;\nfloat a(float limit_1) { return min(limit_1, 1.0); }\nfloat b(float x) { float limit = x; return limit; }";
+        let mut found = items(text);
+        take_numbers_off(&mut found);
+        assert_eq!(self::text(&found), text);
+    }
+
+    #[test]
     fn a_binding_has_its_name_back() {
         let mut found = items(
             "cbuffer view_1 : register(b0) { View view_1; }\nfloat a(float view) { return view; }\nfloat b() { float view = view_1.x; return view; }",
