@@ -12,6 +12,11 @@ pub fn all() -> &'static [Formula] {
     FORMULAS.get_or_init(|| of_modules().into_iter().flatten().collect())
 }
 
+/// Returns the formulas that promise an accuracy: all but the naive forms.
+pub fn promised() -> impl Iterator<Item = &'static Formula> {
+    all().iter().filter(|formula| formula.benign.is_none())
+}
+
 /// Returns the formula of a WGSL function.
 pub fn of_function(function: &str) -> Option<&'static Formula> {
     all().iter().find(|formula| formula.function == function)

@@ -19,15 +19,12 @@ fn program(formula: &Formula) -> Program {
     Program::new(module.whole, formula.module, formula.function).expect("the cookbook's WGSL is valid")
 }
 
-fn promised() -> impl Iterator<Item = &'static Formula> {
-    formulas::all().iter().filter(|formula| formula.benign.is_none())
-}
-
 /// Returns the seams of a promised function of the cookbook. They are found once for all tests.
 fn seams_of(function: &str) -> &'static [Seam] {
     static SEAMS: OnceLock<BTreeMap<&'static str, Vec<Seam>>> = OnceLock::new();
-    let all =
-        SEAMS.get_or_init(|| promised().map(|formula| (formula.function, seams(&program(formula), formula))).collect());
+    let all = SEAMS.get_or_init(|| {
+        formulas::promised().map(|formula| (formula.function, seams(&program(formula), formula))).collect()
+    });
     &all[function]
 }
 
@@ -41,7 +38,7 @@ fn seams(program: &Program, formula: &Formula) -> Vec<Seam> {
 fn the_interpreter_computes_what_the_shaders_do() {
     let gpu = lapidary_testing::gpu();
     let mut faults = Vec::new();
-    for formula in promised() {
+    for formula in formulas::promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
         for row in 0..200 {
             let arguments = formula.domain.row(Settings::default().seed, row);
@@ -70,7 +67,7 @@ fn every_branch_is_straddled_and_continuous_or_says_why_not() {
     }
     let gpu = lapidary_testing::gpu();
     let (mut used, mut faults) = (BTreeSet::new(), BTreeMap::new());
-    for formula in promised() {
+    for formula in formulas::promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
         let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
         let seams = seams_of(formula.function);

@@ -31,7 +31,7 @@ fn cases() -> u64 {
 fn every_function_holds_on_every_device_that_wgsl_allows() {
     let settings = Settings { cases: cases(), seed: lapidary_testing::seed() };
     let mut faults = Vec::new();
-    for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
+    for formula in formulas::promised() {
         let row = examined(formula.function, Source::Cookbook, settings);
         // Reaching the edges is left to the runs on adapters.
         if !row.is_right() {
@@ -47,7 +47,7 @@ fn every_function_holds_on_every_device_that_wgsl_allows() {
 #[test]
 fn what_reassociation_breaks_is_named() {
     let mut faults = Vec::new();
-    for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
+    for formula in formulas::promised() {
         let accuracy = &check::documentation(formula).accuracy;
         let named = matches!(accuracy, Accuracy::Bounded { order_kept: true, .. });
         let on = On::Slack(Reassociation::Reordered);
