@@ -114,10 +114,9 @@ impl Executable {
     }
 
     /// Returns a hash of all that the tests depend on: the program itself, the files and programs of the repository that it
-    /// may read or run, and what is asked of it.
-    pub(crate) fn hash(&self, files: &Files, asked: &impl std::hash::Hash) -> u64 {
+    /// may read or run.
+    pub(crate) fn hash(&self, files: &Files) -> u64 {
         let mut hasher = DefaultHasher::new();
-        asked.hash(&mut hasher);
         built_when(&self.path).hash(&mut hasher);
         files.below(&self.folder).for_each(|file| file.hash(&mut hasher));
         if let Some(programs) = self.path.ancestors().nth(2) {
@@ -127,6 +126,13 @@ impl Executable {
         }
         hasher.finish()
     }
+}
+
+/// Returns the hash of a value.
+pub(crate) fn hash_of(value: &impl std::hash::Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    value.hash(&mut hasher);
+    hasher.finish()
 }
 
 /// Returns what tells a program of cargo's from an earlier one; their contents are gigabytes.
@@ -154,11 +160,7 @@ impl Files {
             return Ok(None);
         }
         let text = String::from_utf8(output.stdout).map_err(std::io::Error::other)?;
-        let hash = |file: &str| {
-            let mut hasher = DefaultHasher::new();
-            std::fs::read(root.join(file)).unwrap_or_default().hash(&mut hasher);
-            (file.to_owned(), hasher.finish())
-        };
+        let hash = |file: &str| (file.to_owned(), hash_of(&std::fs::read(root.join(file)).unwrap_or_default()));
         let files = text.split('\0').filter(|file| !file.is_empty());
         Ok(Some(Self { root: root.to_owned(), hashes: files.map(hash).collect() }))
     }
