@@ -259,8 +259,8 @@ fn bvh_trace_triangle(
     let rp = p - r;
     let pq = q - p;
     // Twice the areas spanned by the origin and the edges opposite a, b, c. Each is computed from the
-    // nearer end of its edge: the error of an area is the distance of that end times the edge. If the direction's largest component is negative, the frame is seen against the ray,
-    // and the sign changes.
+    // nearer end of its edge: the error of an area is the distance of that end times the edge. If the
+    // direction's largest component is negative, the frame is seen against the ray, and the sign changes.
     let squared = vec3f(dot(p.xy, p.xy), dot(q.xy, q.xy), dot(r.xy, r.xy));
     let on_qr = select(q.xy, r.xy, squared.z < squared.y);
     let on_rp = select(r.xy, p.xy, squared.x < squared.z);

@@ -241,10 +241,9 @@ pub fn triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas spanned by the origin and the edges opposite a, b, c, each computed from the
-    // nearer end of its edge, because the error of an area is the distance of that end times the
-    // edge. If the direction's largest component is negative, the frame is seen against the ray,
-    // and the sign changes.
+    // Twice the areas spanned by the origin and the edges opposite a, b, c. Each is computed from the
+    // nearer end of its edge: the error of an area is the distance of that end times the edge. If the
+    // direction's largest component is negative, the frame is seen against the ray, and the sign changes.
     let squared =
         Vec3::new(p.truncate().length_squared(), q.truncate().length_squared(), r.truncate().length_squared());
     let on_qr = if squared.z < squared.y { r } else { q };

@@ -27,6 +27,17 @@ fn all_modules_compile_as_one() {
 }
 
 #[test]
+fn no_line_is_wider_than_a_page() {
+    let modules = modules().iter().map(|module| (module.name, module.whole.to_owned()));
+    let recipes = RECIPES.iter().map(|recipe| (recipe.name, recipe.own_text().concat()));
+    for (name, text) in modules.chain(recipes) {
+        for line in text.lines() {
+            assert!(line.chars().count() <= 120, "{name}: {line}");
+        }
+    }
+}
+
+#[test]
 fn every_module_has_its_four_places() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for module in modules() {

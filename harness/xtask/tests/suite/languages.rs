@@ -344,9 +344,11 @@ fn stages_of_a_recipe_link() {
     }
     let folder = folder();
     let mut linked = 0;
-    let (staged, others): (Vec<&Recipe>, Vec<_>) = RECIPES
-        .iter()
-        .partition(|recipe| recipe.compose().contains("@vertex") && recipe.compose().contains("@fragment"));
+    let has_stages = |recipe: &&Recipe| {
+        let source = recipe.compose();
+        source.contains("@vertex") && source.contains("@fragment")
+    };
+    let (staged, others): (Vec<&Recipe>, Vec<_>) = RECIPES.iter().partition(has_stages);
     for recipe in [staged, others].into_iter().flat_map(|recipes| lapidary_testing::sampled(recipes, 3)) {
         let source = recipe.compose();
         let (ir, _) = dispatch::parse(&source, recipe.name).expect("valid WGSL");
