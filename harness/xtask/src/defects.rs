@@ -274,6 +274,8 @@ impl Tests<'_> {
     fn cargo(&self, options: &[&str], test: &str) -> Result<(bool, String), Failure> {
         let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         command.arg("test").args(options).args(test.split(' ')).current_dir(&self.tree.folder);
+        // What is named is run, also if it is marked as long.
+        command.args(["--", "--include-ignored"]);
         command.env("CARGO_TARGET_DIR", &self.tree.target).env(ADAPTER_VARIABLE, &self.adapter);
         command.env(SEED_VARIABLE, self.seed.to_string()).stdin(Stdio::null()).stderr(Stdio::null());
         let output = command.output();

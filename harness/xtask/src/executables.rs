@@ -67,6 +67,23 @@ pub(crate) struct Ran {
     pub(crate) passed: bool,
     /// Seconds of each test, by its name.
     pub(crate) seconds: BTreeMap<String, f64>,
+    pub(crate) count: Count,
+}
+
+/// Numbers of tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Count {
+    /// Those that ran.
+    pub(crate) ran: usize,
+    /// Those that have the name asked for, but are marked as long.
+    pub(crate) long: usize,
+}
+
+impl std::ops::AddAssign for Count {
+    fn add_assign(&mut self, other: Self) {
+        self.ran += other.ran;
+        self.long += other.long;
+    }
 }
 
 impl Executable {
@@ -89,10 +106,12 @@ impl Executable {
         // What it holds of the pipe would keep the reader waiting.
         drop(command);
         let mut said = format!("{}:\n", self.name).into_bytes();
-        let mut seconds = BTreeMap::new();
+        let (mut seconds, mut count) = (BTreeMap::new(), Count::default());
         for line in BufReader::new(reader).split(b'\n') {
             let line = line.map_err(failed)?;
-            seconds.extend(timed(&String::from_utf8_lossy(&line)));
+            let text = String::from_utf8_lossy(&line);
+            seconds.extend(timed(&text));
+            count += counted(&text).unwrap_or_default();
             said.extend(line);
             said.push(b'\n');
             if is_alone {
@@ -102,7 +121,7 @@ impl Executable {
         }
         let passed = child.wait().map_err(failed)?.success();
         let _ = std::io::stdout().lock().write_all(&said);
-        Ok(Ran { passed, seconds })
+        Ok(Ran { passed, seconds, count })
     }
 
     /// Runs a program that has a `main` of its own.
@@ -184,9 +203,25 @@ fn timed(line: &str) -> Option<(String, f64)> {
     Some((name.to_owned(), seconds))
 }
 
+/// Returns the numbers of one of libtest's lines: `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
+fn counted(line: &str) -> Option<Count> {
+    let (_, parts) = line.strip_prefix("test result: ")?.split_once(". ")?;
+    let number = |what: &str| {
+        parts.split("; ").find_map(|part| part.strip_suffix(what)?.trim().parse::<usize>().ok()).unwrap_or(0)
+    };
+    Some(Count { ran: number("passed") + number("failed"), long: number("ignored") })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tests_are_counted() {
+        let line = "test result: FAILED. 3 passed; 1 failed; 2 ignored; 0 measured; 8 filtered out; finished in 6.36s";
+        assert_eq!(counted(line), Some(Count { ran: 4, long: 2 }));
+        assert_eq!(counted("test a ... ok <0.1s>"), None);
+    }
 
     #[test]
     fn a_tests_seconds_are_read() {

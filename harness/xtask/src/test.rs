@@ -1,7 +1,7 @@
 //! `cook test`.
 
 use crate::defects;
-use crate::executables;
+use crate::executables::{self, Count};
 use lapidary_cook::command::{Context, Failure, Outcome};
 use lapidary_cookbook::repository;
 use lapidary_gpu::ADAPTER_VARIABLE;
@@ -146,7 +146,17 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
             options.push("--nocapture");
         }
         let targets: &[&str] = if arguments.refresh { &REFRESHED } else { &TARGETS };
-        if !suite(&root, arguments, targets, &options, &environment)? {
+        let (mut passed, count) = suite(&root, arguments, targets, &options, &environment)?;
+        if let Some(name) = arguments.filter.as_deref().filter(|_| count.ran == 0) {
+            if count.long > 0 {
+                eprintln!("no test but long ones has `{name}` in its name: they are run");
+                options.push("--ignored");
+                (passed, _) = suite(&root, arguments, targets, &options, &environment)?;
+            } else {
+                eprintln!("no test has `{name}` in its name, unless a mutant has");
+            }
+        }
+        if !passed {
             outcome = Outcome::Failed;
         }
     }
@@ -168,21 +178,23 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
 const AT_A_TIME: usize = 2;
 
 /// Runs the test programs, and says in the end which failed and which were left out. What passes is remembered with a hash
-/// of all that it depends on, and is left out until that changes.
+/// of all that it depends on, and is left out until that changes. Returns whether all passed, and how many ran.
 fn suite(
     root: &Path,
     arguments: &Arguments,
     targets: &[&str],
     options: &[&str],
     environment: &[(&'static str, String)],
-) -> Result<bool, Failure> {
+) -> Result<(bool, Count), Failure> {
     let remembered = root.join("target/lapidary/passed");
     // The commit's seed changes with each commit, and with it alone nothing is run again; one that was asked for counts.
     let set: Vec<_> = environment.iter().filter(|(name, _)| *name != SEED_VARIABLE).collect();
     let given: Vec<_> = std::env::vars().filter(|(name, _)| name.starts_with("LAPIDARY_")).collect();
     // A part of the suite that passed leaves what is known of the whole.
     let asked = executables::hash_of(&(options, set, given));
-    let may_skip = !arguments.again && !arguments.refresh && arguments.times.is_none();
+    // A refresh writes files that other tests read; a few tests are watched, and are run as often as they are asked for.
+    let is_watched = arguments.refresh || arguments.show || arguments.filter.is_some();
+    let may_skip = !arguments.again && !is_watched && arguments.times.is_none();
     let (mut waiting, mut unchanged) = (Vec::new(), Vec::new());
     let built = executables::built(root, targets)?;
     let files = executables::Files::of(root)?;
@@ -196,8 +208,6 @@ fn suite(
             waiting.push((executable, file, hash));
         }
     }
-    // A refresh writes files that other tests read; a few tests are watched.
-    let is_watched = arguments.refresh || arguments.show || arguments.filter.is_some();
     let workers = if is_watched { 1 } else { AT_A_TIME };
     let (waiting, done) = (Mutex::new(waiting.into_iter()), Mutex::new(Vec::new()));
     let work = || -> Result<(), Failure> {
@@ -233,7 +243,9 @@ fn suite(
     if !failed.is_empty() {
         eprintln!("failed: {}", failed.join(", "));
     }
-    Ok(failed.is_empty())
+    let mut count = Count::default();
+    done.iter().for_each(|(_, ran)| count += ran.count);
+    Ok((failed.is_empty(), count))
 }
 
 /// Returns the seconds of each test as a table, the longest first; those below a tenth of a second are added up.

@@ -10,9 +10,9 @@ use serde::Serialize;
 /// The executor of frames, which the examples for engines use too.
 const EXECUTOR: &str = include_str!("../../../../docs/engines/frame.js");
 /// What draws by it.
-const DRAWING: &str = include_str!("../assets/live.js");
+const DRAWING: &str = include_str!("live.js");
 /// The controls.
-const CONTROLS: &str = include_str!("../assets/live_page.js");
+const CONTROLS: &str = include_str!("live_page.js");
 
 #[derive(Serialize)]
 struct Shown<'a> {

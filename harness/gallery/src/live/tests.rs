@@ -202,7 +202,7 @@ fn a_menu_begins_with_the_defaults() {
 #[test]
 fn the_executor_has_at_most_500_lines() {
     let executor = include_str!("../../../../docs/engines/frame.js");
-    let drawing = include_str!("../assets/live.js");
+    let drawing = include_str!("live.js");
     assert!(executor.lines().count() + drawing.lines().count() <= 500);
 }
 

@@ -98,7 +98,7 @@ fn two_scenes_and_a_light_that_were_looked_at_once() {
         ("drops", drops),
         ("dragon, light from the front", lit),
     ] {
-        let truth = walked(&scene, 2048, side);
+        let truth = walked(&scene, 512, side);
         for (rung, most, [best, one]) in shares(name, &scene, &truth, side) {
             // Goals are missed here by up to .11, which docs/diffusion.md says.
             assert!(best.max(one) < most + 0.13, "{name}, {rung}: {best} {one}");

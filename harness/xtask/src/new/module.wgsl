@@ -3,8 +3,8 @@
 // Version: 0.2.0
 // Source: name the paper, book or specification, with equation numbers.
 
-// The difference of two squares, an example to be replaced: in two factors, since the difference of two nearby floats is exact and that of
-// their squares is not.
+// The difference of two squares, an example to be replaced: in two factors, since the difference of two nearby floats
+// is exact and that of their squares is not.
 // Returns: a^2 - b^2.
 // Units: those of a and b, squared; they have the same.
 // Domain: |a| and |b| from 2^-20 up to 2^60.

@@ -231,13 +231,22 @@ fn packages(package: &str, features: &[&str], edges: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
-/// The studies' own lock file follows the crates of the workspace, and their versions.
+/// The lock files of the projects outside the workspace follow its crates and their versions.
+/// `./cook test --refresh` brings them up to date.
 #[test]
-fn the_studies_are_locked() {
-    let mut command = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(["tree", "--manifest-path", "studies/Cargo.toml", "--offline", "--locked"]).current_dir(root());
-    let output = command.output().expect("cargo runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+fn the_projects_outside_are_locked() {
+    let cargo = |arguments: &[&str], project: &str| {
+        let mut command = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.args(arguments).arg("--offline").args(["--manifest-path", project]).current_dir(root());
+        command.output().expect("cargo runs")
+    };
+    for project in ["studies/Cargo.toml", "harness/assay/example/Cargo.toml"] {
+        if std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some() {
+            cargo(&["update", "--workspace"], project);
+        }
+        let output = cargo(&["tree", "--locked"], project);
+        assert!(output.status.success(), "{project}: {}", String::from_utf8_lossy(&output.stderr));
+    }
 }
 
 /// Users of the libraries take on no more packages than the READMEs state, and none that a C or C++
