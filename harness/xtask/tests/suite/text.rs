@@ -11,7 +11,7 @@ use lapidary_snapshots::browse;
 use lapidary_testing::generated;
 use lapidary_testing::program::succeeds;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn signatures_and_accuracies_are_as_they_were() {
@@ -170,6 +170,62 @@ fn the_paths_that_pages_name_are_there() {
         assert!(gone.is_empty(), "{} names {gone:?}, which are not there", path.display());
     }
     assert!(named > 20, "{named}");
+}
+
+/// Every page's links, pictures among them, lead to files of the repository: a code host follows them, and the site shows
+/// one that leads nowhere as plain text.
+#[test]
+fn every_link_of_a_page_leads_to_a_file() {
+    let root = cookbook::repository::place();
+    let mut links = 0;
+    for page in ["", "crates", "docs", "harness", "snapshots", "studies", "wgsl"]
+        .iter()
+        .flat_map(|folder| pages(&root.join(folder)))
+    {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        for target in targets(&text) {
+            let file = target.split('#').next().unwrap_or_default();
+            links += 1;
+            assert!(page.with_file_name(file).exists(), "{}: no file {target}", page.display());
+        }
+    }
+    assert!(links > 500, "{links}");
+}
+
+/// The pages in a folder; below it too, unless it is the repository's.
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let is_root = folder.join("Cargo.lock").is_file() && folder.join("cook").is_file();
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let is_installed = path.ends_with("node_modules") || path.ends_with("target");
+        if path.is_dir() && !is_root && !is_installed {
+            found.extend(pages(&path));
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// The targets of a text's links that are files, outside of code.
+fn targets(text: &str) -> Vec<&str> {
+    let mut is_code = false;
+    let prose = text.lines().filter(|line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence && !line.starts_with("    ")
+    });
+    let spans = prose.flat_map(|line| line.split('`').step_by(2));
+    let links = spans.flat_map(|span| span.split("](").skip(1));
+    let targets = links.filter_map(|rest| rest.split(')').next());
+    targets.filter(|target| !target.contains("://") && !target.starts_with(['#', '<']) && !target.is_empty()).collect()
+}
+
+#[test]
+fn targets_are_those_of_links_outside_of_code() {
+    let text = "[a](b.md#c) and `[d](e)`, [`f`](g/h.png)\n```\n[i](j)\n```\n[k](https://l) [m](#n)";
+    assert_eq!(targets(text), ["b.md#c", "g/h.png"]);
 }
 
 /// The text below a heading, up to the next one.
