@@ -3,7 +3,7 @@
 use crate::defects;
 use crate::executables::{self, Count};
 use lapidary_cook::command::{Context, Failure, Outcome};
-use lapidary_cookbook::repository;
+use lapidary_cookbook::{Module, modules, repository};
 use lapidary_gpu::ADAPTER_VARIABLE;
 use lapidary_testing::WHOLE_VARIABLE;
 use lapidary_testing::seed::{SEED_VARIABLE, SuiteSeed};
@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
     after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show\n  ./cook test --defects wgsl/fresnel"
 )]
 pub struct Arguments {
-    /// Run only the tests whose names contain this text.
+    /// Run only the tests whose names contain this text; those marked as long if there are no others.
     filter: Option<String>,
     /// Skip the mutation tests and the slowest of the others: takes about two minutes.
     #[arg(long)]
@@ -102,7 +102,8 @@ const SLOW: [&str; 39] = [
 const REFRESHING: [(&str, &str); 3] =
     [("LAPIDARY_REFRESH_PAGES", "1"), ("INSTA_UPDATE", "always"), ("INSTA_FORCE_PASS", "1")];
 /// Tests that can write.
-const GENERATED: [&str; 4] = ["engines::the_shaders", "host::the_pages", "text::", "user_file::the_page_shows"];
+const GENERATED: [&str; 5] =
+    ["engines::the_shaders", "host::the_pages", "structure::the_projects", "text::", "user_file::the_page_shows"];
 
 /// Runs the command.
 ///
@@ -147,14 +148,19 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
         }
         let targets: &[&str] = if arguments.refresh { &REFRESHED } else { &TARGETS };
         let (mut passed, count) = suite(&root, arguments, targets, &options, &environment)?;
-        if let Some(name) = arguments.filter.as_deref().filter(|_| count.ran == 0) {
-            if count.long > 0 {
-                eprintln!("no test but long ones has `{name}` in its name: they are run");
+        match (arguments.filter.as_deref(), count) {
+            (Some(name), Count { ran: 0, long: 0 }) if !has_mutants(name) => {
+                return Err(Failure(format!("no test, module or function has `{name}` in its name")));
+            }
+            (Some(name), Count { ran: 0, long: 1.. }) => {
+                eprintln!("all tests with `{name}` in their names are marked as long: they are run");
                 options.push("--ignored");
                 (passed, _) = suite(&root, arguments, targets, &options, &environment)?;
-            } else {
-                eprintln!("no test has `{name}` in its name, unless a mutant has");
             }
+            (Some(name), Count { long: long @ 1.., .. }) => {
+                eprintln!("{long} more with `{name}` in their names are marked as long: --whole runs them too");
+            }
+            _ => {}
         }
         if !passed {
             outcome = Outcome::Failed;
@@ -172,6 +178,13 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
         }
     }
     Ok(outcome)
+}
+
+/// Whether the mutation tests take a name: that of a module or function, or their own.
+fn has_mutants(name: &str) -> bool {
+    let has =
+        |module: &Module| module.functions.iter().any(|it| format!("{}::{}", module.name, it.name).contains(name));
+    name == "mutation" || modules().iter().any(has)
 }
 
 /// Number of test programs that run at a time: many tests wait for a browser, a device or another program.
