@@ -10,11 +10,14 @@ use lapidary_snapshots::exposure::exposed_distance;
 use lapidary_snapshots::frames::halved;
 use lapidary_snapshots::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 
+/// Unless the suite is run whole, one reference in this many is compared.
+const ONE_IN: u64 = 4;
+
 /// Follows each committed reference again with a sixteenth of its pixels and few walks. The means
 /// of the picture's quarters agree within the uncertainty of the walks.
 #[test]
 fn the_committed_references_are_walked_again() {
-    for reference in &WALKED {
+    for reference in lapidary_testing::sampled(&WALKED, ONE_IN) {
         let page = reference.file().with_file_name("README.md");
         let readme = std::fs::read_to_string(page).expect("the references' page");
         assert!(readme.contains(&reference.command()), "{}", reference.command());
@@ -81,7 +84,7 @@ fn is_recorded(gpu: &Gpu, found: f64, recorded: f64) -> bool {
 
 #[test]
 fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
-    for reference in WalkedReference::of("optical_path") {
+    for reference in lapidary_testing::sampled(WalkedReference::of("optical_path"), ONE_IN) {
         let (_, recorded) = DISTANCES.into_iter().find(|(scene, _)| *scene == reference.scene).expect("recorded");
         let gpu = lapidary_testing::gpu();
         let truth = reference.picture(gpu).expect(reference.scene).linear;
@@ -120,7 +123,7 @@ const FIT: [(&str, [f64; 5]); 4] = [
 #[test]
 fn the_scale_of_extinction_is_where_the_fit_has_it() {
     let gpu = lapidary_testing::gpu();
-    for (name, recorded) in FIT {
+    for (name, recorded) in lapidary_testing::sampled(FIT, ONE_IN) {
         let reference = WalkedReference::of_scene(name).expect(name);
         let truth = reference.picture(gpu).expect(name).linear;
         let scene = Scene::named(name).expect("built in");

@@ -379,6 +379,7 @@ fn stages_of_a_recipe_link() {
 }
 
 #[test]
+#[ignore = "long; .ci/full runs it"]
 fn dist_writes_every_text_and_the_same_again() {
     let folder = folder();
     let out = folder.path().join("dist");
