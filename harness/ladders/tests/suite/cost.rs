@@ -47,7 +47,7 @@ fn errors_and_times_are_of_the_same_pictures() {
     let asked = views.join(",");
     let arguments = ["cost", "gem", "--rounds", "1", "--rungs", "surface,bvh-2", "--views", &asked, "--out", "report"];
     let text = succeeds(folder.path(), &arguments).stdout;
-    assert!(text.contains("bvh-2") && text.contains("GTX 760") && text.contains("Dominated"), "{text}");
+    assert!(text.contains("bvh-2") && text.contains("GTX 760"), "{text}");
     let read = |name: &str| std::fs::read_to_string(folder.path().join("report").join(name)).expect(name);
     for file in ["gem.txt", "gem_flip.svg", "gem_rmse.svg"] {
         assert!(read(file).contains("bvh-2"), "{file}");
