@@ -59,6 +59,9 @@ pub struct Material {
     pub roughness: f32,
     /// A second distribution of slopes, mixed with that of `roughness`; `None` if there is one only.
     pub second_lobe: Option<Lobe>,
+    /// Which of several bodies that share space is there: the one of the greatest number, and of equal ones the body of the
+    /// smaller volume, such as one that lies wholly inside the other.
+    pub priority: i32,
     /// Whether both sides of the surface are meant to be seen, as glTF's `doubleSided`. A solid
     /// shows only one.
     pub double_sided: bool,
@@ -126,6 +129,7 @@ impl Material {
             thickness_texture: None,
             roughness: 1.0,
             second_lobe: None,
+            priority: 0,
             double_sided: false,
             sigma0: None,
             medium: None,

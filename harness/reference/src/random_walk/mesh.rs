@@ -4,8 +4,8 @@
 //! [`Medium`](lapidary_scene::Medium). By default their surfaces neither refract nor reflect light,
 //! so that a ray from the eye goes straight in. At each scattering, the light arriving from every
 //! light source is attenuated by all media on its way, including other bodies and the same one
-//! again. Environment light arrives along the walk's last direction. Light that shows through
-//! without being scattered belongs to the background and is left out.
+//! again. Environment light arrives along the walk's last direction, whether it was scattered before or not: thin bodies show
+//! what is behind them, and surfaces that refract reflect it. Lights themselves are not seen.
 //!
 //! Walks start from the eye or from the lights; both give the same image in the mean.
 //!

@@ -4,6 +4,7 @@ use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
 use super::hit::{Hit, Place};
 use super::matte::Mattes;
+use super::within::Within;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
 use lapidary_scene::polyhedron::Plane;
@@ -19,11 +20,23 @@ pub enum Geometry {
     Triangles,
 }
 
-/// All bodies of a scene, closed and without overlap.
+/// All bodies of a scene, closed.
 pub(crate) struct Bodies {
     bodies: Vec<Body>,
     tree: Bvh,
+    extents: Vec<Extent>,
+    /// Whether another body may lie within each, or share space with it: their boxes meet.
+    shares: Vec<bool>,
     mattes: Mattes,
+    /// How far apart two surfaces still lie in one place: 2^12 roundings of the largest coordinate.
+    touching: f64,
+}
+
+/// Which way a ray crosses a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    In,
+    Out,
 }
 
 enum Body {
@@ -55,7 +68,54 @@ impl Bodies {
             }
         };
         let bodies = objects.iter().zip(&extents).enumerate().map(body).collect();
-        Self { bodies, tree: Bvh::new(&extents), mattes }
+        let touching = reach_back(&extents);
+        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), extents, mattes, touching }
+    }
+
+    /// Returns the clear bodies around a point; those beyond the largest number are left out.
+    pub(super) fn around(&self, point: DVec3) -> Within {
+        let mut within = Within::default();
+        for (number, body) in self.bodies.iter().enumerate().filter(|(number, _)| self.extents[*number].holds(point)) {
+            let is_around = !self.mattes.has(number)
+                && match body {
+                    Body::Convex(planes) => planes.holds(point),
+                    Body::Triangles(triangles) => triangles.hold(point),
+                };
+            if is_around {
+                within = within.with(number).unwrap_or(within);
+            }
+        }
+        within
+    }
+
+    /// Finds the next surface that a ray within some bodies crosses, and which way; `left` is the face that it comes from.
+    /// Returns `None` outside if it meets no body, and within bodies if the surface of one is not closed there.
+    ///
+    /// Where surfaces lie in one place, a body is entered before another one is left: no air is between bodies that touch.
+    pub(super) fn cross(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        left: Option<Place>,
+        within: &Within,
+    ) -> Option<(Hit, Way)> {
+        if within.is_empty() {
+            return Some((self.enter(origin, direction, left)?, Way::In));
+        }
+        let mut first: Option<Hit> = None;
+        for body in within.bodies() {
+            let left = left.filter(|place| place.body == body).map(|place| place.face);
+            let limit = first.map_or(f64::INFINITY, |hit| hit.distance);
+            first = self.leave_body(origin, direction, body, left, limit).or(first);
+        }
+        let out = first?;
+        if within.bodies().any(|body| self.shares[body]) {
+            let entered = self.enter_before(origin, direction, left, out.distance + self.touching, within);
+            if let Some(into) = entered {
+                return Some((into, Way::In));
+            }
+        }
+        Some((out, Way::Out))
     }
 
     /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
@@ -81,10 +141,23 @@ impl Bodies {
             debug_assert_eq!(place.body, 0);
             return None;
         }
+        self.enter_before(origin, direction, left, f64::INFINITY, &Within::default())
+    }
+
+    /// Finds where a ray first enters a body before `limit`, of those that it is not `within`.
+    fn enter_before(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        left: Option<Place>,
+        limit: f64,
+        within: &Within,
+    ) -> Option<Hit> {
         let mut first: Option<Hit> = None;
-        self.tree.visit(origin, direction, (0.0, f64::INFINITY), |body, limit| {
+        self.tree.visit(origin, direction, (0.0, limit), |body, limit| {
             let left = left.filter(|place| place.body == body).map(|place| place.face);
             let found = match &self.bodies[body] {
+                _ if within.holds(body) => None,
                 Body::Convex(_) if left.is_some() => None,
                 Body::Convex(planes) => planes.enter(origin, direction),
                 Body::Triangles(triangles) => triangles.first(origin, direction, left, limit, Side::Front),
@@ -95,12 +168,6 @@ impl Bodies {
             first.map_or(limit, |hit| hit.distance)
         });
         first
-    }
-
-    /// Finds where a ray inside the body of `left`, from which it starts, leaves that body. Returns
-    /// `None` if there is no way out: the surface is not closed there.
-    pub(super) fn leave(&self, origin: DVec3, direction: DVec3, left: Place) -> Option<Hit> {
-        self.leave_body(origin, direction, left.body, Some(left.face), f64::INFINITY)
     }
 
     /// Finds where a ray that starts inside `body`, or on its face `left`, leaves it before
@@ -121,6 +188,30 @@ impl Bodies {
     }
 }
 
+/// How far before its origin a ray may still meet a surface, and how far apart two surfaces are one: 2^12 roundings of the
+/// largest coordinate. A ray that starts beside an edge may, by rounding, lie outside the triangle on the edge's other side.
+fn reach_back(extents: &[Extent]) -> f64 {
+    let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
+    largest * f64::EPSILON * f64::from(1 << 12)
+}
+
+/// Returns for each body whether its box meets another one's.
+fn sharing(extents: &[Extent]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..extents.len()).collect();
+    order.sort_by(|&a, &b| extents[a].least.x.total_cmp(&extents[b].least.x));
+    let mut shares = vec![false; extents.len()];
+    for (place, &body) in order.iter().enumerate() {
+        let of_these = |other: &&usize| extents[**other].least.x <= extents[body].greatest.x;
+        for &other in
+            order[place + 1..].iter().take_while(of_these).filter(|other| extents[**other].meets(&extents[body]))
+        {
+            shares[body] = true;
+            shares[other] = true;
+        }
+    }
+    shares
+}
+
 /// Distance, face and outward normal.
 type Found = (f64, usize, DVec3);
 
@@ -128,12 +219,19 @@ type Found = (f64, usize, DVec3);
 struct Planes {
     planes: Vec<Plane>,
     sieve: Sieve,
+    /// See [`reach_back`].
+    reach_back: f64,
 }
 
 impl Planes {
     /// `extent` must contain the body.
     fn new(planes: Vec<Plane>, extent: &Extent) -> Self {
-        Self { sieve: Sieve::new(&planes, extent), planes }
+        Self { sieve: Sieve::new(&planes, extent), planes, reach_back: reach_back(std::slice::from_ref(extent)) }
+    }
+
+    /// Whether a point lies inside.
+    fn holds(&self, point: DVec3) -> bool {
+        self.planes.iter().all(|plane| plane.height(point) < 0.0)
     }
 
     /// Finds the nearest plane that the ray runs towards, except the face just left: no epsilon is
@@ -171,7 +269,8 @@ impl Planes {
                 return None;
             }
         }
-        entry.filter(|(distance, ..)| (0.0..exit).contains(distance))
+        let (distance, face, normal) = entry.filter(|(distance, ..)| (-self.reach_back..exit).contains(distance))?;
+        Some((distance.max(0.0), face, normal))
     }
 }
 
@@ -258,9 +357,7 @@ struct Triangles {
     tree: Bvh,
     /// Grid for short rays that start inside, built by the first of them: most images have none.
     cells: OnceLock<Cells>,
-    /// How far before its origin a ray may still meet a triangle: 2^12 roundings of the largest
-    /// coordinate. A ray that starts beside an edge may, by rounding, lie outside the triangle on
-    /// the edge's other side.
+    /// See [`reach_back`].
     reach_back: f64,
 }
 
@@ -272,10 +369,18 @@ impl Triangles {
             mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
         let normals = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
         let extents: Vec<Extent> = corners.iter().map(|corners| Extent::of(*corners)).collect();
-        let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
-        let reach_back = largest * f64::EPSILON * f64::from(1 << 12);
+        let reach_back = reach_back(&extents);
         let padded: Vec<Extent> = extents.iter().map(|extent| extent.padded(reach_back)).collect();
         Self { tree: Bvh::new(&padded), cells: OnceLock::new(), corners, normals, reach_back }
+    }
+
+    /// Whether a point lies inside: a ray from it leaves before it enters.
+    fn hold(&self, point: DVec3) -> bool {
+        // Along no axis, so that few rays run within a surface.
+        let direction = DVec3::new(0.36, 0.48, 0.8);
+        let first = |side| self.first(point, direction, None, f64::INFINITY, side).map(|(distance, ..)| distance);
+        let entered = first(Side::Front).unwrap_or(f64::INFINITY);
+        first(Side::Back).is_some_and(|left| left < entered)
     }
 
     /// Builds a grid with cells as wide as a triangle of the mean area.

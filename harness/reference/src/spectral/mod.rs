@@ -6,9 +6,10 @@
 //! below a bound. The rest is dropped: at each wavelength an image is too dark, never too bright,
 //! and [`Lost`] says by how much at most. Nothing is random, so two runs give the same image.
 //!
-//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not
-//! overlap; a ray that leaves one may enter another, or the same one again. Surfaces of clear bodies
-//! are flat: shared normals are ignored. Light is multiplied by the base colour on entry and
+//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed; a ray that leaves one may enter
+//! another, or the same one again. Bodies may lie within clear ones, touch or overlap: where they share space, the one of the
+//! highest [`Material::priority`](lapidary_scene::Material::priority) is there, or else the smaller one, up to twelve around
+//! a point. Surfaces of clear bodies are flat: shared normals are ignored. Light is multiplied by the base colour on entry and
 //! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes.
 //!
 //! An opaque body is matte: it sends the same radiance in all directions, base colour / π times the
@@ -25,11 +26,12 @@ pub(crate) mod geometry;
 pub(crate) mod hit;
 mod matte;
 mod trace;
+mod within;
 
 pub use geometry::Geometry;
 
 use geometry::Bodies;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use lapidary_absorption::oracle as absorption;
 use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
@@ -38,6 +40,7 @@ use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surroundings};
+use within::Order;
 
 /// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
@@ -123,8 +126,8 @@ pub struct Rendering {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
     /// Largest share of any sample that meets a body, at any wavelength. It exceeds the energy
-    /// bound only if a ray was trapped by total reflection for 20,000 hits or a surface is not
-    /// closed.
+    /// bound only if a ray was trapped by total reflection for 20,000 hits, a surface is not
+    /// closed, or more than twelve bodies lie within one another.
     pub max: f64,
     /// Mean share over all these samples and wavelengths.
     pub mean: f64,
@@ -280,26 +283,47 @@ struct Pixel {
 struct Job<'scene> {
     view: View,
     surroundings: Surroundings<'scene>,
-    /// Each wavelength with the optics of every body at that wavelength.
-    spectrum: Vec<(Wavelength, Vec<Optics>)>,
+    spectrum: Vec<Band>,
     samples: u32,
+}
+
+/// Wavelengths beside one another at which all bodies have the same optics.
+struct Band {
+    /// Sum of the wavelengths' weights.
+    weights: DMat3,
+    /// Number of wavelengths.
+    count: u32,
+    /// The optics of every body.
+    optics: Vec<Optics>,
 }
 
 impl<'scene> Job<'scene> {
     fn new(scene: &Scene, settings: &Settings<'scene>) -> Self {
-        let spectrum = spectrum::weights(settings.wavelengths).into_iter().map(|wavelength| {
-            let optics = scene.objects.iter().map(|object| optics(object, &wavelength)).collect();
-            (wavelength, optics)
-        });
+        let mut spectrum: Vec<Band> = Vec::new();
+        for wavelength in spectrum::weights(settings.wavelengths) {
+            let optics: Vec<Optics> = scene.objects.iter().map(|object| optics(object, &wavelength)).collect();
+            match spectrum.last_mut().filter(|band| band.optics == optics) {
+                Some(band) => {
+                    band.weights += wavelength.weights;
+                    band.count += 1;
+                }
+                None => spectrum.push(Band { weights: wavelength.weights, count: 1, optics }),
+            }
+        }
         let mattes = Mattes::new(scene, settings.lit_by_environment.then_some(settings.environment));
+        let view = View::new(&scene.camera, settings.width, settings.height);
+        let bodies = Bodies::with_mattes(&scene.objects, settings.geometry, mattes);
+        let around_eye = bodies.around(view.eye);
         Self {
-            view: View::new(&scene.camera, settings.width, settings.height),
+            view,
             surroundings: Surroundings {
-                bodies: Bodies::with_mattes(&scene.objects, settings.geometry, mattes),
+                around_eye,
+                bodies,
+                order: Order::of(&scene.objects),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },
-            spectrum: spectrum.collect(),
+            spectrum,
             samples: settings.samples,
         }
     }
@@ -323,10 +347,10 @@ impl<'scene> Job<'scene> {
             sample.radiance = radiance;
             return sample;
         }
-        for (wavelength, optics) in &self.spectrum {
+        for Band { weights, count, optics } in &self.spectrum {
             let outcome = self.surroundings.follow(&primary, optics);
-            sample.radiance += wavelength.weights * outcome.radiance;
-            sample.lost_sum += outcome.lost;
+            sample.radiance += *weights * outcome.radiance;
+            sample.lost_sum += f64::from(*count) * outcome.lost;
             sample.lost_max = sample.lost_max.max(outcome.lost);
         }
         sample

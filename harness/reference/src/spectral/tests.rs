@@ -62,7 +62,7 @@ fn white_furnace() {
                 let direction = job.view.direction(f64::from(x) + 0.37, f64::from(y) + 0.61);
                 let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
                 met += 1;
-                for (_, optics) in &job.spectrum {
+                for Band { optics, .. } in &job.spectrum {
                     let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
                     assert!(
                         largest((radiance + lost - 1.0).abs().to_array()) <= 1e-9,
@@ -300,7 +300,7 @@ fn white_furnace_with_a_matte_body() {
         let direction = job.view.direction(f64::from(x) + 0.37, f64::from(y) + 0.61);
         let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
         met[usize::from(matches!(primary, Primary::Matte(_)))] += 1;
-        for (_, optics) in &job.spectrum {
+        for Band { optics, .. } in &job.spectrum {
             let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
             assert!(largest((radiance + lost - 1.0).abs().to_array()) <= 5e-5, "{radiance} with {lost} lost");
         }
@@ -312,6 +312,53 @@ fn white_furnace_with_a_matte_body() {
     let bound = gain(3) * (settings.energy_bound + 5e-5);
     let near = |pixel: &[f32; 4]| (0..3).all(|k| f64::from(pixel[k] - pixel[3]).abs() <= bound);
     assert!(rendering.linear.iter().all(near));
+}
+
+/// A clear cube of half a side 1 with a ball of a third inside, both in radiance 1.
+fn with_inclusion(index: f32, inclusion: Material) -> Scene {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let cube = PrismParameters { sides: 4, radius: 1.4, half_length: 1.0, cap_degrees: 0.0 };
+    let cube = prism(&cube).unwrap().to_mesh(Averaging::Angle);
+    let clear = Material { transmission: 1.0, thickness: 1.0, ior: index, ..Material::standard() };
+    scene.objects = vec![Object::new("block", cube, clear), Object::new("inclusion", sphere(0.33, 64), inclusion)];
+    scene.seen_from(65.0, 20.0)
+}
+
+/// Whatever lies in a block, light is neither lost nor gained, and a block of index 1 is not seen.
+#[test]
+fn a_body_within_another_is_seen_and_keeps_the_energy() {
+    let environment = ones();
+    let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
+    let clear =
+        |ior, base_color| Material { transmission: 1.0, thickness: 1.0, ior, base_color, ..Material::standard() };
+    for index in [1.0, 1.5, 2.4] {
+        for inclusion in [Material::standard(), clear(1.0, Vec3::ONE), clear(1.3, Vec3::ONE), clear(2.4, Vec3::ONE)] {
+            let job = Job::new(&with_inclusion(index, inclusion.clone()), &settings);
+            let mut met = 0;
+            for (x, y) in (0..24 * 24u32).map(|k| (k % 24, k / 24)) {
+                let direction = job.view.direction(f64::from(x) + 0.37, f64::from(y) + 0.61);
+                let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
+                met += 1;
+                for Band { optics, .. } in &job.spectrum {
+                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+                    // The harmonics of a matte ball's light are that accurate.
+                    let off = largest((radiance + lost - 1.0).abs().to_array());
+                    assert!(off <= 5e-5, "{index} {}: {radiance} with {lost} lost", inclusion.ior);
+                }
+            }
+            assert!(met > 150, "{met}");
+        }
+    }
+    let middle = |scene: &Scene| rendered(scene, &settings).linear[12 * 24 + 12];
+    let red = Vec3::new(0.8, 0.05, 0.05);
+    let matte = middle(&with_inclusion(1.0, Material { base_color: red, ..Material::standard() }));
+    assert!((0..3).all(|k| (matte[k] - red[k]).abs() < 1e-3), "{matte:?}");
+    // A clear ball that dyes light shows its colour but for what its surface reflects.
+    let mut dyed = with_inclusion(1.0, clear(1.5, red));
+    let within = middle(&dyed);
+    dyed.objects.remove(0);
+    let alone = middle(&dyed);
+    assert!((0..4).all(|k| (within[k] - alone[k]).abs() < 1e-6) && within[1] < 0.2, "{within:?} {alone:?}");
 }
 
 /// In radiance 1 a stone shows 1; what leaves it towards a black plate is missing.
@@ -380,7 +427,7 @@ fn the_first_reflection_shows_a_matte_body() {
     let seen = |scene: &Scene| {
         let job = Job::new(scene, &settings);
         let primary = job.surroundings.primary(2.0 * normal, -normal).expect("met");
-        job.surroundings.follow(&primary, &job.spectrum[1].1).radiance
+        job.surroundings.follow(&primary, &job.spectrum[job.spectrum.len() / 2].optics).radiance
     };
     let index = scene.objects[0].material.index_at(550.0);
     let reflectance = ((index - 1.0) / (index + 1.0)).powi(2);

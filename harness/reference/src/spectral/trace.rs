@@ -1,7 +1,8 @@
 //! Tracing of rays of one wavelength, split at every surface that they meet.
 
-use super::geometry::Bodies;
+use super::geometry::{Bodies, Way};
 use super::hit::{Hit, Place};
+use super::within::{Order, Within};
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;
@@ -15,9 +16,9 @@ use std::collections::BinaryHeap;
 const MOST_HITS: u32 = 20_000;
 
 /// Optical properties of a body at one wavelength.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Optics {
-    /// Refractive index relative to the air outside.
+    /// Refractive index relative to air.
     pub(super) index: f64,
     /// Absorption coefficient of the Beer-Lambert law per unit of distance, for each channel of
     /// linear RGB.
@@ -29,6 +30,9 @@ pub(super) struct Optics {
 /// The surroundings of a ray, whatever its wavelength.
 pub(super) struct Surroundings<'scene> {
     pub(super) bodies: Bodies,
+    pub(super) order: Order,
+    /// The clear bodies around the eye.
+    pub(super) around_eye: Within,
     pub(super) environment: &'scene Environment,
     /// Share of a camera ray's energy that may be dropped.
     pub(super) energy_bound: f64,
@@ -47,6 +51,8 @@ pub(super) struct Outcome {
 pub(super) enum Primary {
     /// The ray meets a clear body.
     Clear(Entry),
+    /// The ray begins within clear bodies.
+    Within(Ray),
     /// The ray meets a matte body, which sends this radiance.
     Matte(DVec3),
 }
@@ -61,12 +67,12 @@ pub(super) struct Entry {
     reflected_radiance: Option<DVec3>,
 }
 
-/// What a ray outside meets first.
+/// What a ray meets first.
 enum Ahead {
-    /// A clear body.
-    Clear(Hit),
-    /// A matte body or the environment, which sends this radiance.
-    Light(DVec3),
+    /// The surface of a clear body.
+    Surface(Hit, Way),
+    /// A matte body or the environment, with the radiance that it sends and its distance.
+    Light(DVec3, f64),
 }
 
 /// A ray that arrives at a surface.
@@ -77,16 +83,22 @@ struct Arrival {
     /// Unit normal, facing the ray.
     normal: DVec3,
     place: Place,
-    inside: bool,
+    /// The bodies before the surface.
+    before: Within,
+    /// The bodies behind it.
+    behind: Within,
     throughput: DVec3,
 }
 
-/// A ray that leaves a surface.
-struct Ray {
+/// A ray that leaves a surface, or the eye.
+#[derive(Clone, Copy)]
+pub(super) struct Ray {
     origin: DVec3,
     direction: DVec3,
-    left: Place,
-    inside: bool,
+    /// The face that it comes from; none for the eye's.
+    left: Option<Place>,
+    /// The bodies around it.
+    within: Within,
     /// Factor from the ray's radiance to its contribution to the camera ray.
     throughput: DVec3,
 }
@@ -121,43 +133,52 @@ impl Eq for Ray {}
 impl Surroundings<'_> {
     /// Finds the first surface that a camera ray meets, of whatever body; `None` if it meets none.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
+        if !self.around_eye.is_empty() {
+            let within = self.around_eye;
+            return Some(Primary::Within(Ray { origin: eye, direction, left: None, within, throughput: DVec3::ONE }));
+        }
         let hit = self.bodies.enter(eye, direction, None)?;
-        let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
-        if let Some(radiance) = self.bodies.sent(&hit, arrival.point) {
+        if let Some(radiance) = self.bodies.sent(&hit, eye + hit.distance * direction) {
             return Some(Primary::Matte(radiance));
         }
+        let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
+        let arrival = ray.arrive(hit, Way::In, DVec3::ONE)?;
         let reflected = reflect(direction, arrival.normal);
-        let reflected_radiance = match self.ahead(arrival.point, reflected, hit.place) {
-            Ahead::Clear(_) => None,
-            Ahead::Light(radiance) => Some(radiance),
+        let reflected_radiance = match self.ahead(&arrival.leave(reflected, arrival.before, DVec3::ONE))? {
+            Ahead::Surface(..) => None,
+            Ahead::Light(radiance, _) => Some(radiance),
         };
         Some(Primary::Clear(Entry { arrival, reflected, reflected_radiance }))
     }
 
-    /// Finds what a ray outside meets that starts from `left`.
-    fn ahead(&self, origin: DVec3, direction: DVec3, left: Place) -> Ahead {
-        let Some(hit) = self.bodies.enter(origin, direction, Some(left)) else {
-            return Ahead::Light(self.environment.radiance(direction));
+    /// Finds what a ray meets; `None` if it is within a body whose surface has a gap there.
+    fn ahead(&self, ray: &Ray) -> Option<Ahead> {
+        let Some((hit, way)) = self.bodies.cross(ray.origin, ray.direction, ray.left, &ray.within) else {
+            let around = || Ahead::Light(self.environment.radiance(ray.direction), f64::INFINITY);
+            return ray.within.is_empty().then(around);
         };
-        self.bodies.sent(&hit, origin + hit.distance * direction).map_or(Ahead::Clear(hit), Ahead::Light)
+        let sent = self.bodies.sent(&hit, ray.origin + hit.distance * ray.direction);
+        Some(sent.map_or(Ahead::Surface(hit, way), |radiance| Ahead::Light(radiance, hit.distance)))
     }
 
     /// Follows `primary` at one wavelength with the bodies' `optics` at that wavelength. The
     /// strongest ray comes first, until all remaining rays together have less energy than the
     /// bound.
     pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
-        let Entry { arrival, reflected, reflected_radiance } = match primary {
-            Primary::Clear(entry) => entry,
-            Primary::Matte(radiance) => return Outcome { radiance: *radiance, lost: 0.0 },
-        };
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
-        let (reflectance, transmitted) = arrival.split(optics);
-        match reflected_radiance {
-            Some(radiance) => outcome.radiance += reflectance * *radiance,
-            None => waiting.push(arrival.leave(*reflected, false, DVec3::splat(reflectance))),
+        match primary {
+            Primary::Matte(radiance) => return Outcome { radiance: *radiance, lost: 0.0 },
+            Primary::Within(ray) => waiting.push(*ray),
+            Primary::Clear(Entry { arrival, reflected, reflected_radiance }) => {
+                let (reflectance, transmitted) = arrival.split(&self.order, optics);
+                match reflected_radiance {
+                    Some(radiance) => outcome.radiance += reflectance * *radiance,
+                    None => waiting.push(arrival.leave(*reflected, arrival.before, DVec3::splat(reflectance))),
+                }
+                waiting.extend(transmitted);
+            }
         }
-        waiting.extend(transmitted);
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
         // The strongest ray, if known without asking the heap: usually one under total reflection.
         let mut strongest: Option<Ray> = None;
@@ -169,14 +190,14 @@ impl Surroundings<'_> {
             pending -= ray.energy();
             let Some(arrival) = self.travel(&ray, optics, &mut outcome) else { continue };
             hits += 1;
-            let (reflectance, transmitted) = arrival.split(optics);
+            let (reflectance, transmitted) = arrival.split(&self.order, optics);
             if let Some(ray) = transmitted {
                 pending += ray.energy();
                 waiting.push(ray);
             }
             if reflectance > 0.0 {
                 let direction = reflect(arrival.direction, arrival.normal);
-                let ray = arrival.leave(direction, arrival.inside, arrival.throughput * reflectance);
+                let ray = arrival.leave(direction, arrival.before, arrival.throughput * reflectance);
                 pending += ray.energy();
                 match waiting.peek() {
                     Some(other) if *other > ray => waiting.push(ray),
@@ -188,42 +209,69 @@ impl Surroundings<'_> {
         outcome
     }
 
-    /// Finds the next surface of a clear body along the ray. If there is none outside, the light of
-    /// the matte body or of the environment ahead is added to `outcome`; if there is none inside,
-    /// the surface has a gap and the ray is lost.
+    /// Finds the next surface of a clear body along the ray. If there is none, the light of the matte
+    /// body or of the environment ahead is added to `outcome`. The ray is lost if it is within a body
+    /// whose surface has a gap there, or comes into more bodies than are followed.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
-        if ray.inside {
-            let Some(hit) = self.bodies.leave(ray.origin, ray.direction, ray.left) else {
-                outcome.lost += ray.energy();
+        let through = |distance: f64| {
+            let matter = ray.within.matter(&self.order);
+            ray.throughput * matter.map_or(DVec3::ONE, |body| (-distance * optics[body].absorption).exp())
+        };
+        let arrival = match self.ahead(ray) {
+            Some(Ahead::Light(radiance, distance)) => {
+                outcome.radiance += through(distance) * radiance;
                 return None;
-            };
-            let transmittance = (-hit.distance * optics[ray.left.body].absorption).exp();
-            return Some(Arrival::new(ray.origin, ray.direction, hit, true, ray.throughput * transmittance));
-        }
-        match self.ahead(ray.origin, ray.direction, ray.left) {
-            Ahead::Clear(hit) => Some(Arrival::new(ray.origin, ray.direction, hit, false, ray.throughput)),
-            Ahead::Light(radiance) => {
-                outcome.radiance += ray.throughput * radiance;
-                None
             }
+            Some(Ahead::Surface(hit, way)) => ray.arrive(hit, way, through(hit.distance)),
+            None => None,
+        };
+        if arrival.is_none() {
+            outcome.lost += ray.energy();
         }
+        arrival
+    }
+}
+
+impl Ray {
+    /// Returns the ray's arrival at `hit`; `None` if it comes into more bodies than are followed.
+    fn arrive(&self, hit: Hit, way: Way, throughput: DVec3) -> Option<Arrival> {
+        let (normal, behind) = match way {
+            Way::In => (hit.normal, self.within.with(hit.place.body)?),
+            Way::Out => (-hit.normal, self.within.without(hit.place.body)),
+        };
+        let (point, direction) = (self.origin + hit.distance * self.direction, self.direction);
+        Some(Arrival { point, direction, normal, place: hit.place, before: self.within, behind, throughput })
     }
 }
 
 impl Arrival {
-    fn new(origin: DVec3, direction: DVec3, hit: Hit, inside: bool, throughput: DVec3) -> Self {
-        let normal = if inside { -hit.normal } else { hit.normal };
-        Self { point: origin + hit.distance * direction, direction, normal, place: hit.place, inside, throughput }
+    fn leave(&self, direction: DVec3, within: Within, throughput: DVec3) -> Ray {
+        Ray { origin: self.point, direction, left: Some(self.place), within, throughput }
     }
 
-    fn leave(&self, direction: DVec3, inside: bool, throughput: DVec3) -> Ray {
-        Ray { origin: self.point, direction, left: self.place, inside, throughput }
-    }
-
-    /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection.
-    fn split(&self, optics: &[Optics]) -> (f64, Option<Ray>) {
-        let Optics { index, base_color, .. } = optics[self.place.body];
-        let (relative_index, color) = if self.inside { (1.0 / index, DVec3::ONE) } else { (index, base_color) };
+    /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection. A surface with the same
+    /// matter on both sides is not there: all light crosses it straight.
+    fn split(&self, order: &Order, optics: &[Optics]) -> (f64, Option<Ray>) {
+        let (mut before, mut behind) = (self.before, self.behind);
+        let (from, to) = (before.matter(order), behind.matter(order));
+        if from == to {
+            return (0.0, Some(self.leave(self.direction, behind, self.throughput)));
+        }
+        let index = |matter: Option<usize>| matter.map_or(1.0, |body| optics[body].index);
+        let relative_index = index(to) / index(from);
+        // Light takes a body's colour once on its way through it: where its ray first comes into its matter, or, if the eye
+        // is there, leaves it.
+        let mut color = DVec3::ONE;
+        if let Some(body) = from
+            && before.color(body)
+        {
+            color *= optics[body].base_color;
+        }
+        if let Some(body) = to
+            && behind.color(body)
+        {
+            color *= optics[body].base_color;
+        }
         let cosine = -self.normal.dot(self.direction);
         // Skips the oracle well beyond the critical angle; near it, the oracle decides.
         let squared_sine = (1.0 - cosine) * (1.0 + cosine);
@@ -236,7 +284,7 @@ impl Arrival {
         }
         let reflectance = fresnel::dielectric(cosine, relative_index);
         let throughput = self.throughput * color * (1.0 - reflectance);
-        (reflectance, Some(self.leave(refracted.direction, !self.inside, throughput)))
+        (reflectance, Some(self.leave(refracted.direction, behind, throughput)))
     }
 }
 

@@ -101,9 +101,9 @@ pub(super) enum Beginnings {
 /// Result of a walk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outcome {
-    /// Linear RGB radiance of light that was scattered at least once, for a walk from the eye.
+    /// Linear RGB radiance, for a walk from the eye: of lights that was scattered at least once, and of the environment.
     pub(super) radiance: DVec3,
-    /// Throughput of a walk that was never scattered; its mean is the share of the background that
+    /// Throughput of a walk that was never scattered; its mean is the share of what is behind that
     /// shows through.
     pub(super) straight: DVec3,
     pub(super) scatterings: u32,

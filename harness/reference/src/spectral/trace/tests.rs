@@ -21,6 +21,18 @@ fn plate() -> Object {
     Object::new("plate", mesh, Material::standard())
 }
 
+fn surroundings<'a>(
+    objects: &[Object],
+    environment: &'a Environment,
+    geometry: Geometry,
+    eye: DVec3,
+    energy_bound: f64,
+) -> Surroundings<'a> {
+    let bodies = Bodies::new(objects, geometry);
+    let around_eye = bodies.around(eye);
+    Surroundings { bodies, order: Order::of(objects), around_eye, environment, energy_bound }
+}
+
 fn outcome(
     object: &Object,
     environment: &Environment,
@@ -28,15 +40,17 @@ fn outcome(
     optics: Optics,
     direction: DVec3,
 ) -> Outcome {
-    let bodies = Bodies::new(std::slice::from_ref(object), geometry);
-    let surroundings = Surroundings { bodies, environment, energy_bound: 1e-13 };
-    let primary = surroundings.primary(DVec3::new(0.3, 0.0, 0.2) - 3.0 * direction, direction).expect("met");
+    let eye = DVec3::new(0.3, 0.0, 0.2) - 3.0 * direction;
+    let surroundings = surroundings(std::slice::from_ref(object), environment, geometry, eye, 1e-13);
+    let primary = surroundings.primary(eye, direction).expect("met");
     surroundings.follow(&primary, &[optics])
 }
 
 fn clear(index: f64) -> Optics {
     Optics { index, absorption: DVec3::ZERO, base_color: DVec3::ONE }
 }
+
+mod nested;
 
 #[test]
 fn a_plate_reflects_what_the_sum_of_all_its_reflections_says() {
@@ -89,9 +103,10 @@ fn what_is_dropped_is_counted() {
     let object = plate();
     let environment = sky();
     for energy_bound in [1e-1, 1e-3, 1e-6] {
-        let bodies = Bodies::new(std::slice::from_ref(&object), Geometry::Planes);
-        let surroundings = Surroundings { bodies, environment: &environment, energy_bound };
-        let primary = surroundings.primary(DVec3::new(0.3, 2.0, 0.2), -DVec3::Y).expect("met");
+        let eye = DVec3::new(0.3, 2.0, 0.2);
+        let surroundings =
+            surroundings(std::slice::from_ref(&object), &environment, Geometry::Planes, eye, energy_bound);
+        let primary = surroundings.primary(eye, -DVec3::Y).expect("met");
         let seen = surroundings.follow(&primary, &[clear(2.41749)]);
         let whole = outcome(&object, &environment, Geometry::Planes, clear(2.41749), -DVec3::Y);
         assert!(seen.lost > 0.0 && seen.lost < energy_bound);
@@ -128,10 +143,12 @@ fn the_shortcut_to_total_reflection_agrees_with_the_oracle() {
                 direction: DVec3::new(angle.sin(), -angle.cos(), 0.0),
                 normal: DVec3::Y,
                 place: Place { body: 0, face: 0 },
-                inside: true,
+                before: Within::default().with(0).expect("room"),
+                behind: Within::default(),
                 throughput: DVec3::ONE,
             };
-            let (reflectance, transmitted) = arrival.split(&[clear(index)]);
+            let order = Order::of(&[plate()]);
+            let (reflectance, transmitted) = arrival.split(&order, &[clear(index)]);
             let truth = refraction::refract(arrival.direction, arrival.normal, 1.0 / index);
             assert_eq!(transmitted.is_none(), truth.total, "{index} {step}");
             assert!(transmitted.is_none_or(|ray| (ray.energy() + reflectance - 1.0).abs() < 1e-15));

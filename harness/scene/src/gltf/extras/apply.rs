@@ -31,6 +31,7 @@ impl Lapidary<'_> {
         material.sigma0 = self.sigma0.map(|json| lengths("sigma0", json)).transpose()?;
         material.medium = medium(self)?;
         material.second_lobe = self.second_lobe.map(lobe).transpose()?;
+        material.priority = self.priority.map_or(Ok(0), priority)?;
         material.solver = self.solver.map(solver).transpose()?;
         if material.solver.is_some() && !material.scatters() {
             return Err("its extras.lapidary has a solver, but nothing there scatters light; give scattering and absorption, or \
@@ -62,6 +63,12 @@ fn agree(mineral: Mineral, ior: Option<f64>, dispersion: Option<f64>) -> Result<
         ));
     }
     Ok(())
+}
+
+fn priority(json: &RawValue) -> Result<i32, String> {
+    serde_json::from_str(json.get()).map_err(|_| {
+        format!("its extras.lapidary.priority is {}, but must be a whole number of 32 bits", excerpt(json.get()))
+    })
 }
 
 /// Mineral named by `sellmeier`.

@@ -186,7 +186,6 @@ impl Matter<'_> {
     fn leave(&self, direction: DVec3, throughput: DVec3, outcome: &mut Outcome) {
         if outcome.scatterings == 0 {
             outcome.straight = throughput;
-            return;
         }
         if let Some(environment) = self.environment {
             outcome.radiance += throughput * environment.radiance(direction);

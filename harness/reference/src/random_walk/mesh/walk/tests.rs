@@ -207,7 +207,7 @@ fn white_furnace() {
             let origin = through + 20.0 * (towards + 0.1 * around);
             let direction = (through - origin).normalize();
             let outcome = seen(&matter, origin, direction, random);
-            let all = outcome.radiance + outcome.straight;
+            let all = outcome.radiance;
             if all != DVec3::ZERO {
                 assert!((all.element_sum() - 3.0).abs() < 1e-9, "{all}");
                 return all;

@@ -78,7 +78,7 @@ fn given_back(medium: Medium, boundary: Boundary, ior: f32, cosine: f64) -> (f64
     let eye = towards(cosine);
     let (mean, error) = estimate(40_000, 5, |random| {
         let outcome = seen(&matter, DVec3::new(0.31, 0.17, 0.0) + 3.0 * eye, -eye, random);
-        outcome.radiance + outcome.straight
+        outcome.radiance
     });
     (mean.x, error.x)
 }
@@ -161,7 +161,7 @@ fn white_furnace() {
                 let direction = (through - origin).normalize();
                 let Some(hit) = matter.enter(origin, direction) else { continue };
                 let outcome = matter.walk(Ray { position: origin, direction }, hit, Beginnings::All, random);
-                let all = outcome.radiance + outcome.straight;
+                let all = outcome.radiance;
                 assert!(outcome.lost || (all.element_sum() - 3.0).abs() < 1e-9, "{all}");
                 break if outcome.lost { DVec3::ONE } else { all };
             }
