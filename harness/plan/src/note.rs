@@ -1,6 +1,7 @@
 //! Warnings about a picture that the picture itself does not show.
 
 use super::Rung;
+use super::numbers::short;
 use std::fmt;
 
 /// A warning: something about a picture is wrong, or may be.
@@ -106,6 +107,26 @@ pub enum Note {
         /// The rung that draws them.
         rung: Rung,
     },
+    /// Bodies within a clear one whose rung shows nothing of them.
+    Within {
+        /// The objects concerned.
+        objects: Objects,
+        /// Name of the clear body.
+        around: String,
+        /// The rung that draws it.
+        rung: Rung,
+    },
+    /// A body that shares space with a clear one, without lying within it.
+    ShareSpace {
+        /// The object concerned.
+        objects: Objects,
+        /// Name of the clear body.
+        with: String,
+        /// Name of the one that the reference takes to be there.
+        there: String,
+        /// The rung that draws the clear one.
+        rung: Rung,
+    },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
         /// The objects concerned.
@@ -194,8 +215,9 @@ impl fmt::Display for Note {
             ),
             Self::ClipsToWhite { objects, radiance } => write!(
                 f,
-                "{objects}: radiance {radiance:.0} in every channel is shown as plain white; make the lights weaker, or give an --exposure of \
+                "{objects}: radiance {} in every channel is shown as plain white; make the lights weaker, or give an --exposure of \
                  about {:.0e}",
+                short(*radiance),
                 0.5 / radiance
             ),
             Self::HardEdges { objects, rung } => write!(
@@ -214,6 +236,19 @@ impl fmt::Display for Note {
             Self::LampInside { objects, rung } => write!(
                 f,
                 "{objects}: a lamp stands inside, and rung `{rung}` shows nothing of its light; give the body a rung such as `diffusion-64`"
+            ),
+            Self::Within { objects, around, rung } => write!(
+                f,
+                "{objects}: inside the clear `{around}`, of which rung `{rung}` shows nothing but the surroundings; --rung reference shows what is inside"
+            ),
+            Self::ShareSpace { objects, with, there, rung: Rung::Reference } => write!(
+                f,
+                "{objects}: shares space with the clear `{with}`; `{there}` is there, unless extras.lapidary.priority says otherwise"
+            ),
+            Self::ShareSpace { objects, with, rung, .. } => write!(
+                f,
+                "{objects}: shares space with the clear `{with}`, through which rung `{rung}` follows light as if it were alone; --rung reference \
+                 follows both"
             ),
             Self::NotClear { objects, asked, instead } => write!(
                 f,
@@ -269,6 +304,23 @@ mod tests {
             ),
             line_of(Note::AllEnters { objects: objects(2), rung, share: 0.25 }, "between 0 and 1, here 0.25"),
             line_of(Note::LampInside { objects: objects(1), rung }, "a rung such as `diffusion-64`"),
+            line_of(
+                Note::Within { objects: objects(2), around: "glass".to_owned(), rung },
+                "2 objects, first `hare`: inside the clear `glass`, of which rung `convex-8` shows nothing",
+            ),
+            line_of(
+                Note::ShareSpace {
+                    objects: objects(1),
+                    with: "glass".to_owned(),
+                    there: "glass".to_owned(),
+                    rung: Rung::Reference,
+                },
+                "shares space with the clear `glass`; `glass` is there",
+            ),
+            line_of(
+                Note::ShareSpace { objects: objects(1), with: "glass".to_owned(), there: "glass".to_owned(), rung },
+                "follows light as if it were alone",
+            ),
             line_of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
             line_of(Note::NothingInView, "--from"),
             line_of(

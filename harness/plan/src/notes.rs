@@ -1,5 +1,8 @@
 //! Warnings before a scene is drawn: bodies and lights that no technique can render faithfully.
 
+mod merge;
+mod shared_space;
+
 use super::{Decisions, thickness};
 use crate::remembered::Remembered;
 use crate::{Geometry, Note, Objects, Request, Rung, enclosed};
@@ -7,6 +10,7 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
 use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world};
+use merge::add;
 use std::f64::consts::PI;
 
 /// Maximum triangle count of a mesh that is diagnosed. Larger ones would take seconds, and as much
@@ -38,39 +42,8 @@ pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec
             add(&mut notes, note);
         }
     }
+    notes.extend(shared_space::notes(scene, decisions));
     notes
-}
-
-/// Adds a note on one object; merges it with an earlier note on other objects if both say the same.
-fn add(notes: &mut Vec<Note>, note: Note) {
-    let known = notes.iter_mut().find_map(|known| match (known, &note) {
-        (Note::NotSolid { objects, rung, .. }, Note::NotSolid { rung: other, .. }) if rung == other => Some(objects),
-        (Note::InsideOut { objects }, Note::InsideOut { .. })
-        | (Note::BackNotDrawn { objects }, Note::BackNotDrawn { .. })
-        | (Note::Black { objects, .. }, Note::Black { .. })
-        | (Note::ClipsToWhite { objects, .. }, Note::ClipsToWhite { .. }) => Some(objects),
-        (Note::ThinWall { objects, unused }, Note::ThinWall { unused: other, .. }) if unused == other => Some(objects),
-        (Note::HardEdges { objects, rung }, Note::HardEdges { rung: other, .. }) if rung == other => Some(objects),
-        (Note::FactorsAlone { objects, rung, what }, Note::FactorsAlone { rung: other, what: others, .. })
-            if rung == other && what == others =>
-        {
-            Some(objects)
-        }
-        (Note::NotClear { objects, instead, .. }, Note::NotClear { instead: other, .. }) if instead == other => {
-            Some(objects)
-        }
-        (Note::AllEnters { objects, rung, share }, Note::AllEnters { rung: other, share: others, .. })
-            if (*rung, *share) == (*other, *others) =>
-        {
-            Some(objects)
-        }
-        (Note::LampInside { objects, rung }, Note::LampInside { rung: other, .. }) if rung == other => Some(objects),
-        _ => None,
-    });
-    match known {
-        Some(objects) => objects.count += 1,
-        None => notes.push(note),
-    }
 }
 
 /// One object with its rung.

@@ -2,10 +2,13 @@
 
 use glam::Vec3;
 
-/// Formats a number to three significant digits.
+/// Formats a number to three significant digits, and one of more than nine as a power of ten.
 pub(super) fn short(value: f32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
+    }
+    if value.abs() >= 1e9 {
+        return format!("{value:.2e}");
     }
     let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
     let text = format!("{value:.digits$}");

@@ -76,7 +76,12 @@ fn meshes_that_are_no_solids_are_named_where_a_rung_needs_one() {
 #[test]
 fn many_objects_are_one_note() {
     let mut scene = changed("ruby", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));
-    scene.objects = vec![scene.objects[0].clone(); 5];
+    let ruby = scene.objects[0].clone();
+    let placed = |k: i32| {
+        let mesh = ruby.mesh.placed(glam::DQuat::IDENTITY, 9.0 * f64::from(k) * glam::DVec3::X);
+        Object { mesh, ..ruby.clone() }
+    };
+    scene.objects = (0..5).map(placed).collect();
     one(&scene, &by("bvh-4"), "5 objects, first `ruby`: rung `bvh-4`");
 }
 
@@ -187,4 +192,38 @@ fn what_is_not_clear_is_never_drawn_as_glass() {
         };
         assert!(is_noted("coin") && is_noted(&scene.objects[1].name) && !is_noted("ruby"), "{said:?}");
     }
+}
+
+/// A ball of a radius about a place on the x axis.
+fn ball(name: &str, radius: f64, x: f64, material: Material) -> Object {
+    let mesh = sphere(radius, 24).placed(glam::DQuat::IDENTITY, glam::DVec3::new(x, 0.0, 0.0));
+    Object::new(name, mesh, material)
+}
+
+#[test]
+fn bodies_that_share_space_with_clear_ones_are_named() {
+    let glass = || Material { transmission: 1.0, thickness: 1.0, roughness: 0.0, ..Material::standard() };
+    let said_of = |objects: Vec<Object>, request: &Request<'_>| {
+        let mut scene = named("octahedron");
+        scene.objects = objects;
+        said(&scene, request)
+    };
+    let within = vec![ball("glass", 1.0, 0.0, glass()), ball("pearl", 0.3, 0.2, Material::standard())];
+    let notes = said_of(within.clone(), &usual());
+    assert!(matches!(&notes[..], [note] if note.contains("object `pearl`: inside the clear `glass`")), "{notes:?}");
+    assert_eq!(said_of(within, &by("reference")), [""; 0]);
+    // Two that overlap are named once, with the smaller.
+    let overlap = vec![ball("water", 1.0, 0.0, glass()), ball("glass", 0.8, 1.0, glass())];
+    let notes = said_of(overlap.clone(), &by("reference"));
+    assert!(matches!(&notes[..], [note] if note.contains("; `glass` is there")), "{notes:?}");
+    let twice = vec![overlap[0].clone(); 3];
+    let notes = said_of(twice, &by("reference"));
+    assert!(matches!(&notes[..], [note] if note.starts_with("3 objects, first `water`: shares space")), "{notes:?}");
+    let mut strong = overlap;
+    strong[0].material.priority = 1;
+    let notes = said_of(strong, &by("reference"));
+    assert!(matches!(&notes[..], [note] if note.contains("; `water` is there")), "{notes:?}");
+    // Side by side, touching, and opaque around clear: nothing is shared.
+    let apart = vec![ball("one", 1.0, 0.0, glass()), ball("other", 0.5, 1.5, glass())];
+    assert_eq!(said_of(apart, &usual()), [""; 0]);
 }
