@@ -42,6 +42,9 @@ mod nodes;
 mod not_drawn;
 mod primitive;
 mod requirement;
+mod sources;
+mod sparse;
+mod stored;
 mod survey;
 mod texture;
 mod uri;
@@ -51,6 +54,7 @@ pub(super) use instances::{COLORING, NAME as INSTANCING};
 pub use limits::{
     KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_FILE_BYTES, MAX_IMAGE_BYTES, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES,
 };
+pub(super) use sources::sources;
 pub(super) use texture::TRANSFORM as TEXTURE_TRANSFORM;
 
 /// Default camera for a scene without one: vertical field of view in radians, and direction towards

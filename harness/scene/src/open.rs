@@ -1,7 +1,7 @@
 //! Opens what a user types: the name of a built-in scene, or the path of a file.
 
 use std::ffi::{OsStr, OsString};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::built_in::{self, list};
 use crate::{Scene, SceneError, gltf};
@@ -26,6 +26,12 @@ impl Scene {
             return Path::new(argument).file_stem().map_or_else(|| "scene".into(), OsStr::to_owned);
         }
         list::named(argument).map_or("scene", |scene| scene.name).into()
+    }
+
+    /// Returns the files that [`Scene::open`] reads: the file itself, and those that its buffers and images name.
+    #[must_use]
+    pub fn sources(argument: &str) -> Vec<PathBuf> {
+        if names_a_file(argument) { gltf::sources(Path::new(argument)) } else { Vec::new() }
     }
 
     /// Returns the built-in scene called `name`; see [`BUILT_IN`](crate::BUILT_IN).

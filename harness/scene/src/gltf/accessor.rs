@@ -4,9 +4,11 @@ use ::gltf::json::Root;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
 
-use super::buffers::{Buffers, range};
+use super::buffers::Buffers;
 use super::error::{GltfError, item};
 use super::requirement::{DRACO, MESHOPT, QUANTIZATION};
+use super::sparse;
+use super::stored::{Stored, little_endian};
 
 /// Elements of an accessor, verified to lie within their buffer.
 #[derive(Debug, Clone, Copy)]
@@ -98,10 +100,17 @@ impl<'a> Elements<'a> {
                 format!("{needs}; export without quantisation or compression")
             }));
         };
-        if accessor.sparse.is_some() {
-            return Err(wrong("sparse accessors are not read; export without them".to_owned()));
+        let size = component.size() * type_.multiplicity();
+        let count = accessor.count.0;
+        let view = accessor.buffer_view.map(|view| {
+            let start = accessor.byte_offset.map_or(0, |offset| offset.0);
+            Stored { part: &name, view: view.value(), start, size, count }.find(root, buffers)
+        });
+        if let Some(sparse) = &accessor.sparse {
+            let bytes = sparse::filled(root, buffers, (index, &name), sparse, (size, count), view.transpose()?)?;
+            return Ok(Self { bytes, stride: size, size, count: bytes.len() / size, component });
         }
-        let Some(view_index) = accessor.buffer_view else {
+        let Some(view) = view else {
             let has = |name: &str| root.extensions_used.iter().any(|used| used == name);
             let by = std::iter::once(DRACO).chain(MESHOPT).find(|name| has(name));
             return Err(wrong(by.map_or_else(
@@ -114,29 +123,9 @@ impl<'a> Elements<'a> {
                 },
             )));
         };
-        let view = item(&root.buffer_views, "bufferView", view_index.value(), || name.clone())?;
-        let view_bytes = buffers.view(root, view_index.value(), || name.clone())?;
-
-        let size = component.size() * type_.multiplicity();
-        let stride = view.byte_stride.map_or(size, |stride| stride.0);
-        if !(size..=252).contains(&stride) {
-            return Err(wrong(format!(
-                "its elements of {size} bytes lie {stride} apart, but must lie {size} to 252 apart"
-            )));
-        }
-        let count = accessor.count.0;
-        let start = accessor.byte_offset.map_or(0, |offset| offset.0);
-        // The last element may end before its full stride.
-        let length = count.checked_sub(1).and_then(|steps| steps.checked_mul(stride as u64)?.checked_add(size as u64));
-        let bytes = length.and_then(|length| range(view_bytes, start, length));
-        let (Some(bytes), Ok(count)) = (bytes, usize::try_from(count)) else {
-            let has = view_bytes.len();
-            return Err(wrong(format!(
-                "it has {count} elements of {size} bytes, {stride} apart from byte {start}, in a \
-                 bufferView of {has} bytes; export it again"
-            )));
-        };
-        Ok(Self { bytes, stride, size, count, component })
+        let (bytes, stride) = view?;
+        // What lies in a buffer fits in a usize.
+        Ok(Self { bytes, stride, size, count: count as usize, component })
     }
 
     /// Number of elements, at least one.
@@ -200,9 +189,4 @@ impl<'a> Elements<'a> {
         let chunks = self.bytes.chunks(self.stride).take(self.count);
         chunks.map(move |chunk| &chunk[..self.size])
     }
-}
-
-/// Decodes an integer of up to four bytes, which need not be aligned.
-fn little_endian(bytes: &[u8]) -> u32 {
-    bytes.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
 }

@@ -1,6 +1,7 @@
 //! Contents of a file's buffers: the binary chunk, base64 in the JSON, or external files.
 
 use std::borrow::Cow;
+use std::cell::{Cell, OnceCell};
 use std::path::Path;
 
 use ::gltf::json::{Buffer, Root};
@@ -13,11 +14,19 @@ use super::uri;
 #[derive(Debug)]
 pub(super) struct Buffers<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
+    /// The elements of each sparse accessor, once they have been asked for.
+    filled: Vec<OnceCell<Vec<u8>>>,
+    /// Bytes that those not yet asked for may take.
+    left: Cell<u64>,
 }
 
 impl<'a> Buffers<'a> {
     pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, base: Option<&Path>) -> Result<Self, GltfError> {
-        let mut all = Self { buffers: Vec::with_capacity(root.buffers.len()) };
+        let mut all = Self {
+            buffers: Vec::with_capacity(root.buffers.len()),
+            filled: vec![OnceCell::new(); root.accessors.len()],
+            left: Cell::new(MAX_FILE_BYTES),
+        };
         let mut left = MAX_FILE_BYTES;
         for (index, buffer) in root.buffers.iter().enumerate() {
             let length = buffer.byte_length.0;
@@ -30,6 +39,28 @@ impl<'a> Buffers<'a> {
             all.buffers.push(bytes);
         }
         Ok(all)
+    }
+
+    /// Returns the elements of the sparse accessor `index`, of so many bytes, as `fill` made them when they were first asked for.
+    /// Together they may take [`MAX_FILE_BYTES`]: a small file can state any number of them.
+    pub(super) fn filled(
+        &self,
+        index: usize,
+        bytes: u64,
+        fill: impl FnOnce() -> Result<Vec<u8>, GltfError>,
+    ) -> Result<&[u8], GltfError> {
+        let kept = &self.filled[index];
+        if let Some(elements) = kept.get() {
+            return Ok(elements);
+        }
+        let left = self.left.get().checked_sub(bytes).ok_or_else(|| GltfError::TooLarge {
+            what: format!("accessor {index}, with the sparse ones before it,"),
+            bytes: (MAX_FILE_BYTES - self.left.get()).saturating_add(bytes),
+            limit: MAX_FILE_BYTES,
+        })?;
+        self.left.set(left);
+        let elements = fill()?;
+        Ok(kept.get_or_init(|| elements))
     }
 
     /// Returns the bytes of buffer view `index`, which `user` refers to.

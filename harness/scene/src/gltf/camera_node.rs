@@ -30,6 +30,15 @@ pub(super) fn first_perspective(
                 format!("its yfov is {fov}, but must lie above 0 and below π (180°)"),
             ));
         }
+        // Nothing is cut off at either, but a file that contradicts itself is told.
+        if let Some(far) = perspective.zfar
+            && far <= perspective.znear
+        {
+            return Err(GltfError::part(
+                designation("camera", index, camera.name.as_deref()),
+                format!("its zfar is {far}, but must be above its znear, {}", perspective.znear),
+            ));
+        }
         let bounds = Bounds::of(vertices(objects));
         let placed = place(node.world, fov, &bounds).ok_or_else(|| {
             GltfError::part(

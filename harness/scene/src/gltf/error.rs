@@ -36,7 +36,7 @@ pub enum GltfError {
     },
     /// Unsupported version of glTF.
     #[error(
-        "this is glTF version {version}, but only 2.x is read; export it as glTF 2.0, or convert it (`gltf-pipeline` does)"
+        "it is of glTF version {version}, but only 2.0 is read; export it as glTF 2.0, or convert it (`gltf-pipeline` does)"
     )]
     Version {
         /// Version that the file requires.

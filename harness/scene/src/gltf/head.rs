@@ -72,7 +72,7 @@ pub(super) fn check(json: &[u8]) -> Result<(), GltfError> {
     let is_first = [head.meshes, head.buffers].iter().any(|items| matches!(items, Some(Items::Named)));
     let refused = match (version, least) {
         (Some(version), _) if !version.starts_with("2.") => Some(version),
-        (_, Some(least)) if !least.starts_with("2.") => Some(least),
+        (_, Some(least)) if least != "2.0" => Some(least),
         (None, _) if is_first => Some("1.0".to_owned()),
         _ => None,
     };

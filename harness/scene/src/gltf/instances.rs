@@ -8,7 +8,7 @@ use super::accessor::{Elements, Kind, ROTATIONS, VECTORS};
 use super::buffers::Buffers;
 use super::error::{GltfError, excerpt};
 use super::extension::Extension;
-use super::nodes::{ShownNode, composed};
+use super::nodes::{ShownNode, composed, has_no_direction};
 use crate::copies::Place;
 
 /// Name of the extension.
@@ -75,10 +75,15 @@ impl<'a> Instances<'a> {
             return Err(wrong(problem));
         }
         let list = List { count, translations, rotations, scales, base_colors, attenuation_colors };
-        match list.first_not_finite() {
-            Some(instance) => Err(wrong(format!("instance {instance} of its {NAME} is not finite; mend or remove it"))),
-            None => Ok(Self { world: node.world, list: Some(list) }),
+        if let Some(instance) = list.first_not_finite() {
+            return Err(wrong(format!("instance {instance} of its {NAME} is not finite; mend or remove it")));
         }
+        if let Some(instance) = rotations.and_then(|all| all.quaternions().position(has_no_direction)) {
+            return Err(wrong(format!(
+                "instance {instance} of its {NAME} has the rotation 0, 0, 0, 0, which turns nothing; give a unit quaternion"
+            )));
+        }
+        Ok(Self { world: node.world, list: Some(list) })
     }
 
     /// Number of places, at least one.
@@ -155,12 +160,9 @@ impl List<'_> {
         for (place, rotation) in places.iter_mut().zip(self.rotations.iter().flat_map(|all| all.quaternions())) {
             let exact = DQuat::from_array(rotation.map(f64::from));
             let length = exact.length();
-            place.rotation = match length {
-                0.0 => Quat::IDENTITY,
-                // The file's own numbers are as close to length 1 as f32 comes.
-                _ if (length - 1.0).abs() < 1e-6 => Quat::from_array(rotation),
-                _ => (exact / length).as_quat(),
-            };
+            // The file's own numbers are as close to length 1 as f32 comes.
+            let is_unit = (length - 1.0).abs() < 1e-6;
+            place.rotation = if is_unit { Quat::from_array(rotation) } else { (exact / length).as_quat() };
         }
         for (place, [x, y, z]) in places.iter_mut().zip(self.scales.iter().flat_map(|all| all.vectors())) {
             if !(x > 0.0 && x == y && y == z) {

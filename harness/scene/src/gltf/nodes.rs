@@ -79,7 +79,9 @@ fn walk<'a>(root: &'a Root, roots: &[usize], scene: usize) -> Result<Vec<ShownNo
                 "it is reached twice, but nodes must form a tree; remove the cycle or second parent",
             ));
         }
-        let world = outer * local(node);
+        let local = local(node)
+            .map_err(|problem| GltfError::part(designation("node", index, node.name.as_deref()), problem))?;
+        let world = outer * local;
         waiting.extend(children(node).rev().map(|child| (child, Some(index), world)));
         shown.push(ShownNode { index, node, world });
     }
@@ -87,11 +89,34 @@ fn walk<'a>(root: &'a Root, roots: &[usize], scene: usize) -> Result<Vec<ShownNo
 }
 
 /// The node's own transform: its matrix, or else translation · rotation · scale.
-fn local(node: &Node) -> DMat4 {
-    if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
+fn local(node: &Node) -> Result<DMat4, String> {
+    let rotation = node.rotation.map(|rotation| rotation.0);
+    let Some(matrix) = node.matrix else {
+        if rotation.is_some_and(has_no_direction) {
+            return Err("its rotation is 0, 0, 0, 0, which turns nothing; give a unit quaternion, or none".to_owned());
+        }
+        return Ok(composed(node.translation, rotation, node.scale));
+    };
+    let others = [
+        ("translation", node.translation.is_some()),
+        ("rotation", rotation.is_some()),
+        ("scale", node.scale.is_some()),
+    ];
+    if let Some((other, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(format!("it has a matrix and a {other}, which exclude each other; remove one"));
     }
-    composed(node.translation, node.rotation.map(|rotation| rotation.0), node.scale)
+    let last = [matrix[3], matrix[7], matrix[11], matrix[15]];
+    if last != [0.0, 0.0, 0.0, 1.0] {
+        return Err(format!(
+            "its matrix has the last row {last:?}, but must have 0, 0, 0, 1; a node has no perspective"
+        ));
+    }
+    Ok(DMat4::from_cols_array(&matrix.map(f64::from)))
+}
+
+/// Whether a quaternion is no rotation: it has no length.
+pub(super) fn has_no_direction(rotation: [f32; 4]) -> bool {
+    rotation == [0.0; 4]
 }
 
 /// Translation · rotation (a quaternion, real part last) · scale; a missing factor is the identity.
@@ -100,11 +125,9 @@ pub(super) fn composed(translation: Option<[f32; 3]>, rotation: Option<[f32; 4]>
     let scale = scale.map_or(DVec3::ONE, vector);
     let translation = translation.map_or(DVec3::ZERO, vector);
     let rotation = rotation.map_or(DQuat::IDENTITY, |rotation| {
+        // The file's numbers are rounded, so the length is only close to 1.
         let quaternion = DQuat::from_array(rotation.map(f64::from));
-        // The file's numbers are rounded, so the length is only close to 1. A zero quaternion is
-        // taken as the identity, which is what exporters mean by four zeros.
-        let length = quaternion.length();
-        if length > 0.0 { quaternion / length } else { DQuat::IDENTITY }
+        quaternion / quaternion.length()
     });
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }

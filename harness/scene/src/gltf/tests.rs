@@ -7,6 +7,7 @@ use super::*;
 use crate::normals::FALLBACK_NORMAL;
 use crate::{Dispersion, Material, Medium, Mineral, glb};
 
+mod contradictions;
 mod example;
 mod head;
 mod instancing;
@@ -14,6 +15,8 @@ mod lacking;
 mod lights;
 mod refusals;
 mod refused_data;
+mod sources;
+mod sparse;
 mod texture_coordinates;
 mod textures;
 mod transmission;

@@ -36,6 +36,11 @@ fn decode(data: &str) -> Result<Vec<u8>, String> {
     decoded.map_err(|error| format!("its base64 is damaged: {error}; export it again"))
 }
 
+/// Path of the file that `uri` refers to; `None` if it holds the data itself, or is no path that is read.
+pub(super) fn file(uri: &str, base: &Path) -> Option<PathBuf> {
+    if uri.starts_with("data:") { None } else { resolve(uri, Some(base)).ok() }
+}
+
 /// Path of the file that a relative URI refers to.
 fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
     let shown = excerpt(uri);

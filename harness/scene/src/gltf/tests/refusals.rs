@@ -74,6 +74,7 @@ fn hostile_container_lengths() {
 fn versions_and_extensions() {
     refused("/asset/version", json!("1.0"), "version 1.0");
     refused("/asset/minVersion", json!("3.0"), "version 3.0");
+    refused("/asset/minVersion", json!("2.1"), "version 2.1");
     let unknown = json!(["KHR_materials_ior", "KHR_texture_transform", "VENDOR_y", "EXT_x"]);
     refused("/extensionsRequired", unknown, "supported: VENDOR_y, EXT_x;");
 }
@@ -89,7 +90,7 @@ fn the_first_version_is_named_also_as_text() {
     for asset in [json!({"version": "1.0"}), json!({"version": "1.1"}), json!({"version": 1.0}), json!({}), Value::Null]
     {
         let message = parse(first(asset).to_string().as_bytes(), None).unwrap_err().to_string();
-        assert!(message.starts_with("this is glTF version 1.") && message.contains("convert it"), "{message}");
+        assert!(message.starts_with("it is of glTF version 1.") && message.contains("convert it"), "{message}");
     }
     refused("/asset", json!({}), "its JSON is not valid glTF");
 }

@@ -30,12 +30,6 @@ fn accessors_of_the_wrong_kind() {
     refused("/accessors/0/type", json!("VEC9"), "needs VEC3 of float");
     refused("/accessors/1/componentType", json!(5126), "unsigned byte, short or int");
     refused("/accessors/0/bufferView", Value::Null, "it has no bufferView");
-    let sparse = json!({
-        "count": 1,
-        "indices": {"bufferView": 1, "componentType": 5123},
-        "values": {"bufferView": 0},
-    });
-    refused("/accessors/0/sparse", sparse, "sparse accessors are not read");
     refused("/meshes/0/primitives/0/attributes", json!({}), "it has no POSITION");
     refused("/accessors/1/count", json!(2), "shows no triangles");
 }
