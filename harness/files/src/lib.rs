@@ -7,4 +7,4 @@ pub mod text_file;
 mod whole_file;
 
 pub use regular_file::not_a_file;
-pub use whole_file::{WriteError, check_writable, replace};
+pub use whole_file::{InputError, WriteError, check_writable, refuse_input, replace};

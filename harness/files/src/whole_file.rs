@@ -13,6 +13,23 @@ pub struct WriteError {
     pub error: std::io::Error,
 }
 
+/// An output is a file that the command reads.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: the command reads it{}, and would overwrite it; name another file with --out", .out.display(), .by)]
+pub struct InputError {
+    out: PathBuf,
+    /// By which other name the command reads it, if it has one.
+    by: String,
+}
+
+/// Refuses an output that is one of the files that a command reads, by whatever name or link.
+pub fn refuse_input<'a>(out: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), InputError> {
+    let is_out = |input: &&Path| same_file::is_same_file(out, input).unwrap_or(false);
+    let Some(input) = inputs.into_iter().find(is_out) else { return Ok(()) };
+    let by = if input == out { String::new() } else { format!(" as {}", input.display()) };
+    Err(InputError { out: out.to_owned(), by })
+}
+
 /// Checks that a file can be written at `path`, so that an error shows before hours of rendering
 /// instead of after.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {

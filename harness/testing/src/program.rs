@@ -9,7 +9,7 @@ const PROGRAMS: [(&str, &[&str]); 3] =
     [("ladders", &["cost", "builtins"]), ("gallery", &["gallery"]), ("xtask", &["test", "new", "dist", "snapshots"])];
 
 /// Returns the program of a command, which stands above the test that runs: a run of the whole suite builds all.
-fn program(command: Option<&OsStr>) -> PathBuf {
+pub fn program(command: Option<&OsStr>) -> PathBuf {
     let holds = |commands: &[&str]| command.is_some_and(|word| commands.iter().any(|command| word == *command));
     let name = PROGRAMS.iter().find(|(_, commands)| holds(commands)).map_or("cook", |(name, _)| name);
     let test = std::env::current_exe().expect("the test's own path");

@@ -77,6 +77,13 @@ fn of_node(text: &str) -> (Option<String>, &str) {
 }
 
 impl Asked {
+    /// Returns the files that are read.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        let mut files = Scene::sources(&self.scene);
+        files.extend(self.environment.clone());
+        files
+    }
+
     /// Opens the scene, with the materials that were asked for.
     pub(super) fn open(&self) -> Result<Scene, Failure> {
         let mut scene = Scene::open(&self.scene)?;

@@ -10,7 +10,7 @@ use lapidary_render as render;
 use lapidary_render::file::{self, Format};
 use lapidary_render::{ReferenceOptions, Settings, WalkOptions, WalkedPicture};
 use lapidary_scene::Scene;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Renders a scene: a built-in by name, or a .glb or .gltf file.
 #[derive(clap::Args)]
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     drawn: Drawn,
     /// Output file, PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in the current
-    /// folder by default.
+    /// folder by default, or SCENE.picture.png if the scene is read from a file of that name.
     #[arg(long, value_name = "F.png|F.exr", help_heading = "Options")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -123,6 +123,18 @@ fn is_told_again(note: &Note, found: &[Note]) -> bool {
         && found.iter().any(|found| matches!(found, Note::Open { object, .. } if *object == objects.first))
 }
 
+/// Returns the name of a picture of `scene` in the current folder, which is none of the files that are read.
+fn default_output<'a, Inputs: Iterator<Item = &'a Path>>(scene: &str, inputs: impl Fn() -> Inputs) -> PathBuf {
+    let named = |ending: &str| {
+        // Not the scene's name, which comes from the file: it would decide where the picture is written.
+        let mut name = Scene::stem(scene);
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let plain = named(".png");
+    if lapidary_files::refuse_input(&plain, inputs()).is_ok() { plain } else { named(".picture.png") }
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let (scene, settings, mut notes) = arguments.drawn.open(arguments.given())?;
     let settings = Settings {
@@ -130,14 +142,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         walks: arguments.walks.as_ref().map_or(settings.walks, Walks::options),
         ..settings
     };
-    let out = arguments.out.clone().unwrap_or_else(|| {
-        // Not the scene's name, which comes from the file: it would decide where the picture is
-        // written.
-        let mut name = Scene::stem(&arguments.drawn.asked.scene);
-        name.push(".png");
-        PathBuf::from(name)
-    });
+    let inputs = arguments.drawn.asked.inputs();
+    let inputs = || inputs.iter().map(PathBuf::as_path);
+    let out = arguments.out.clone().unwrap_or_else(|| default_output(&arguments.drawn.asked.scene, inputs));
     Format::of_path(&out)?;
+    lapidary_files::refuse_input(&out, inputs())?;
     lapidary_files::check_writable(&out)?;
     let bar = progress::bar(0, "rendering");
     let picture = render::render_reporting(context.gpu()?, &scene, &settings, &mut |done, total| {

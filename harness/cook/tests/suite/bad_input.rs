@@ -204,7 +204,7 @@ const SCENES: &[Row] = &[
     ("emrald --out {}/out.png", One, &["`emrald`", "did you mean `step_cut`?"]),
     ("{}/draco.gltf --out {}/out.png", One, &["compressed by KHR_draco_mesh_compression", "gltf-transform copy"]),
     ("{}/quantised.gltf --out {}/out.png", One, &["accessor 0", "KHR_mesh_quantization", "gltf-transform dequantize"]),
-    ("{}/first.gltf --out {}/out.png", One, &["first.gltf: this is glTF version 1.0", "convert it"]),
+    ("{}/first.gltf --out {}/out.png", One, &["first.gltf: it is of glTF version 1.0", "convert it"]),
     ("{}/empty_scene.gltf --out {}/out.png", One, &["empty_scene.gltf: ", "no triangles"]),
 ];
 

@@ -8,6 +8,7 @@ mod comparator;
 mod constants;
 mod formulas;
 mod hard_cases;
+mod inputs;
 #[cfg(unix)]
 mod launcher;
 mod outside;

@@ -168,7 +168,7 @@ fn sizes_that_no_device_has_are_refused() {
         variable("array<f32, 400000000>").as_bytes(),
         &["`refraction_reflect` needs 1600000000 bytes of variables"],
     );
-    refused(variable("array<f32, 20000>").as_bytes(), &["at most 65536"]);
+    refused(variable("array<f32, 20000>").as_bytes(), &["WGSL promises 8192"]);
     // Sizes add up, also through calls.
     let halves = format!(
         "fn half() -> f32 {{ var a: array<f32, 9000>; return a[3]; }}\n{}",
