@@ -40,7 +40,7 @@ pub fn run<A: Parser>(act: impl FnOnce(A) -> Result<Outcome, Failure>) -> ExitCo
     let arguments = match A::try_parse_from(number::joined(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && error.kind() != ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            eprintln!("cook: {}", one_line(&error.to_string()));
+            output::remark(&one_line(&error.to_string()));
             return ExitCode::from(2);
         }
         Err(error) => {
@@ -53,7 +53,7 @@ pub fn run<A: Parser>(act: impl FnOnce(A) -> Result<Outcome, Failure>) -> ExitCo
         Ok(Outcome::Passed) => ExitCode::SUCCESS,
         Ok(Outcome::Failed) => ExitCode::from(1),
         Err(Failure(message)) => {
-            eprintln!("cook: {}", message.trim_end());
+            output::remark(message.trim_end());
             ExitCode::from(2)
         }
     }

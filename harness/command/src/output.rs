@@ -1,4 +1,5 @@
-//! Output of commands on stdout. A failed write is an error, unless the reader has closed the pipe.
+//! Output of commands: results on stdout, remarks on stderr. A failed write of a result is an error, unless the reader has
+//! closed the pipe.
 
 use super::failure::Failure;
 use std::io::Write as _;
@@ -18,4 +19,9 @@ pub fn bytes(bytes: &[u8]) -> Result<(), Failure> {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Failure(format!("stdout: cannot be written: {error}"))),
     }
+}
+
+/// Writes a remark or a failure as a line on stderr. If that cannot be written, nobody can be told.
+pub fn remark(text: &str) {
+    let _ = writeln!(std::io::stderr(), "cook: {text}");
 }

@@ -9,9 +9,9 @@ const IN_THE_REPOSITORY: [&str; 8] = ["builtins", "cost", "dist", "gallery", "ne
 
 fn main() -> ExitCode {
     if let Some(command) = std::env::args().nth(1).filter(|word| IN_THE_REPOSITORY.contains(&word.as_str())) {
-        eprintln!(
-            "cook: `{command}` is a command of the cookbook's repository; clone it and run ./cook {command} there"
-        );
+        lapidary_cook::command::output::remark(&format!(
+            "`{command}` is a command of the cookbook's repository; clone it and run ./cook {command} there"
+        ));
         return ExitCode::from(2);
     }
     cli::run()

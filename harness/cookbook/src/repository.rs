@@ -1,6 +1,10 @@
-//! The repository that this program was built from, for what needs more of it than the program holds.
+//! The repository that this program acts on, for what needs more of it than the program holds.
 
 use std::path::{Path, PathBuf};
+
+/// Variable with the repository's folder, which the launcher `./cook` sets: its own folder. A clone may be mounted elsewhere
+/// than where the program was built.
+pub const VARIABLE: &str = "LAPIDARY_REPOSITORY";
 
 /// The repository is not where the program was built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -10,9 +14,13 @@ pub struct NoRepository {
     place: PathBuf,
 }
 
-/// Returns where the repository was when the program was built.
+/// Returns the folder of the launcher that runs this program; without a launcher, where the repository was when the program
+/// was built.
 #[must_use]
 pub fn place() -> PathBuf {
+    if let Some(folder) = std::env::var_os(VARIABLE) {
+        return PathBuf::from(folder);
+    }
     let harness = Path::new(env!("CARGO_MANIFEST_DIR"));
     harness.ancestors().nth(2).unwrap_or(harness).to_owned()
 }

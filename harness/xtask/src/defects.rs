@@ -277,6 +277,7 @@ impl Tests<'_> {
         // What is named is run, also if it is marked as long.
         command.args(["--", "--include-ignored"]);
         command.env("CARGO_TARGET_DIR", &self.tree.target).env(ADAPTER_VARIABLE, &self.adapter);
+        command.env(repository::VARIABLE, &self.tree.folder);
         command.env(SEED_VARIABLE, self.seed.to_string()).stdin(Stdio::null()).stderr(Stdio::null());
         let output = command.output();
         let output = output.map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;

@@ -22,6 +22,11 @@ pub fn read(path: &Path) -> Result<String, String> {
 /// Checks that a text nests no deeper than compilers can handle. An error is a single line with
 /// place and remedy.
 pub fn check(path: &str, text: &str) -> Result<(), String> {
+    // WGSL forbids it (section 3.2), and naga takes it for a blank.
+    if let Some(before) = text.find('\0') {
+        let line = 1 + text[..before].matches('\n').count();
+        return Err(format!("{path}:{line}: holds a NUL character, which WGSL forbids; remove it"));
+    }
     let tokens = tokens(text);
     // The number of operators so far at each level of brackets, and their sum.
     let mut levels = vec![0usize];
@@ -92,6 +97,7 @@ mod tests {
             let chain = format!("fn f() {{ if (x) {{ }} {} }}", link.repeat(20_000));
             assert!(check("f", &chain).is_err(), "{link}");
         }
+        assert!(check("f.wgsl", "fn f() {\n\0}").expect_err("a NUL").starts_with("f.wgsl:2: holds a NUL"));
         // Unbalanced text is left for naga to reject.
         check("f", "}}}}))))]]]] ,;").expect("no nesting");
     }

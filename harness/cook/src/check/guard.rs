@@ -9,33 +9,39 @@ use std::time::{Duration, Instant};
 const STACK_BYTES: usize = 512 << 20;
 /// Memory limit in bytes; checks of the cookbook's own functions need less than a tenth of it.
 const MOST_BYTES: u64 = 2 << 30;
-/// Time limit for reading and compiling. Running has no limit: its duration follows from `--cases`.
+/// Time limit for reading and compiling. Drivers compile at the first run, which has that time besides its own.
 const MOST_COMPILING: Duration = Duration::from_secs(120);
+/// Time limit of each case of a run: a thousand times what the cookbook's functions take.
+const MOST_OF_A_CASE: Duration = Duration::from_millis(2);
 /// Interval between two checks of memory and time.
 const LOOK: Duration = Duration::from_millis(10);
 /// Name of the thread, by which its panics are recognised.
 const THREAD: &str = "a user's file";
 
-/// What the thread is currently doing.
+/// What the thread is currently doing, since when and for how long at most.
 #[derive(Clone, Debug)]
-pub struct Stage(Arc<Mutex<(String, Option<Instant>)>>);
+pub struct Stage(Arc<Mutex<(String, Instant, Duration)>>);
 
 impl Stage {
-    /// Starts a compilation step, which has a time limit.
+    fn new(what: &str) -> Self {
+        Self(Arc::new(Mutex::new((what.to_owned(), Instant::now(), MOST_COMPILING))))
+    }
+
+    /// Starts a compilation step.
     pub fn compiling(&self, what: &str) {
-        self.set(what, Some(Instant::now()));
+        self.set(what, MOST_COMPILING);
     }
 
-    /// Starts a step without a time limit.
-    pub fn running(&self, what: &str) {
-        self.set(what, None);
+    /// Starts a run of so many cases.
+    pub fn running(&self, what: &str, cases: u64) {
+        self.set(what, MOST_COMPILING + MOST_OF_A_CASE.mul_f64(cases as f64));
     }
 
-    fn set(&self, what: &str, since: Option<Instant>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = (what.to_owned(), since);
+    fn set(&self, what: &str, most: Duration) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = (what.to_owned(), Instant::now(), most);
     }
 
-    fn get(&self) -> (String, Option<Instant>) {
+    fn get(&self) -> (String, Instant, Duration) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
@@ -47,8 +53,8 @@ pub enum GuardError {
     #[error("{0} takes over {most} MiB of memory; make its arrays smaller", most = MOST_BYTES >> 20)]
     Memory(String),
     /// The time limit was exceeded.
-    #[error("{0} takes over {most} s; make it simpler", most = MOST_COMPILING.as_secs())]
-    Time(String),
+    #[error("{0} takes over {most} s; make it simpler", most = .1.as_secs())]
+    Time(String, Duration),
     /// The compiler or this program panicked.
     #[error("{stage} breaks the compiler ({reason}); change the lines that it cannot take")]
     Panic {
@@ -73,7 +79,7 @@ fn watched_within<T: Send + 'static>(
     work: impl FnOnce(&Stage) -> T + Send + 'static,
 ) -> Result<T, GuardError> {
     silence_panics();
-    let stage = Stage(Arc::new(Mutex::new(("reading the file".to_owned(), Some(Instant::now())))));
+    let stage = Stage::new("reading the file");
     let before = resident_bytes();
     let (sender, receiver) = channel();
     let its_stage = stage.clone();
@@ -89,12 +95,12 @@ fn watched_within<T: Send + 'static>(
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {}
         }
-        let (what, since) = stage.get();
+        let (what, since, most) = stage.get();
         if resident_bytes().saturating_sub(before) > most_bytes {
             return Err(GuardError::Memory(what));
         }
-        if since.is_some_and(|since| since.elapsed() > MOST_COMPILING) {
-            return Err(GuardError::Time(what));
+        if since.elapsed() > most {
+            return Err(GuardError::Time(what, most));
         }
     }
     let reason = match thread.join() {

@@ -145,7 +145,7 @@ fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
     if json {
         // stdout holds only the array.
         for line in text::notes(&checked.notes) {
-            eprintln!("cook: {line}");
+            output::remark(&line);
         }
         output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
     } else {
@@ -197,7 +197,7 @@ impl Bench<'_> {
         let bar = super::progress::bar(work.len() as u64, "checking");
         for (formula, settings) in work {
             if let Some(stage) = self.stage {
-                stage.running(&format!("running `{}`", formula.function));
+                stage.running(&format!("running `{}`", formula.function), settings.cases);
             }
             bar.set_message(format!("{} seed {}", formula.function, settings.seed));
             keep(check::run_keeping(self.on, formula, self.source, *settings, self.regressions)?)?;
@@ -222,7 +222,7 @@ fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.json {
         output::line("[]")?;
     }
-    eprintln!("cook: {count} functions skipped: {}", browser::MISSING);
+    output::remark(&format!("{count} functions skipped: {}", browser::MISSING));
     Ok(Outcome::Passed)
 }
 

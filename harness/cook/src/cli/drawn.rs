@@ -3,7 +3,7 @@
 
 use super::asked::{Asked, refuse_without_meaning};
 use super::named::named;
-use super::{Failure, number};
+use super::{Failure, number, output};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::{
@@ -332,9 +332,9 @@ pub(super) fn planned(scene: &Scene, settings: &Settings) -> Vec<Note> {
 /// Prints warnings on stderr, and what of the scene's file is not drawn.
 pub(super) fn tell(notes: &[Note], scene: &Scene) {
     for note in notes {
-        eprintln!("cook: {note}");
+        output::remark(&note.to_string());
     }
     for lacking in &scene.lacking {
-        eprintln!("cook: not drawn, though the file asks for it: {lacking}");
+        output::remark(&format!("not drawn, though the file asks for it: {lacking}"));
     }
 }

@@ -1,7 +1,8 @@
 //! `cook new` writes all files of a technique or none. `.ci/full` builds and tests one.
 
 use lapidary_cookbook::header::{parse_functions, parse_header};
-use lapidary_testing::program::{cook, folder, succeeds};
+use lapidary_cookbook::repository;
+use lapidary_testing::program::{cook, cook_in, folder, succeeds};
 use lapidary_xtask::lint::lint;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -84,4 +85,17 @@ fn what_cannot_be_a_technique_leaves_nothing_behind() {
         assert!(answer.stderr.contains(said), "{arguments:?}: {}", answer.stderr);
         assert_eq!(files(copy.path()), before, "{arguments:?}");
     }
+}
+
+/// A clone may be mounted elsewhere than where the program was built: the launcher says where it stands.
+#[test]
+fn the_clone_that_is_run_is_the_one_that_changes() {
+    let (copy, elsewhere) = (cookbook(), folder());
+    let before = files(copy.path()).len();
+    let root = copy.path().to_str().expect("UTF-8");
+    let answer = cook_in(elsewhere.path(), &["new", "thin_film"], &[(repository::VARIABLE, root)]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    assert_eq!(files(copy.path()).len(), before + 8);
+    let launcher = std::fs::read_to_string(repository::place().join("cook")).expect("the launcher");
+    assert!(launcher.contains(&format!("export {}=$cd_root", repository::VARIABLE)), "the launcher says nothing");
 }

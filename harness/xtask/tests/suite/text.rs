@@ -192,16 +192,53 @@ fn every_link_of_a_page_leads_to_a_file() {
     assert!(links > 500, "{links}");
 }
 
+/// `./cook test NAME` on a page runs something: a test, or those of a file or a module, has the name.
+#[test]
+fn the_tests_that_pages_name_are_there() {
+    // CONTRIBUTING's own example.
+    const EXAMPLE: &str = "plate";
+    let root = cookbook::repository::place();
+    let mut names = String::new();
+    for folder in ["crates", "harness"] {
+        for file in with_ending(&root.join(folder), "rs") {
+            names.push_str(&file.display().to_string());
+            let text = std::fs::read_to_string(&file).expect("a source");
+            names.extend(
+                text.lines().filter_map(|line| line.trim_start().strip_prefix("fn ")).flat_map(|line| [" ", line]),
+            );
+        }
+    }
+    let mut named = 0;
+    for page in ["", "docs", "harness"].iter().flat_map(|folder| pages(&root.join(folder))) {
+        let text = std::fs::read_to_string(&page).expect("a page").replace('\n', " ");
+        for filter in text.split("./cook test ").skip(1) {
+            let filter: String = filter
+                .chars()
+                .take_while(|letter| letter.is_ascii_lowercase() || "_:0123456789".contains(*letter))
+                .collect();
+            named += usize::from(!filter.is_empty());
+            let is_there = filter == EXAMPLE || filter.split("::").all(|part| names.contains(part));
+            assert!(is_there, "{}: no test has `{filter}` in its name", page.display());
+        }
+    }
+    assert!(named > 30, "{named}");
+}
+
 /// The pages in a folder; below it too, unless it is the repository's.
 fn pages(folder: &Path) -> Vec<PathBuf> {
+    with_ending(folder, "md")
+}
+
+/// The files in a folder with this ending; below it too, unless it is the repository's.
+fn with_ending(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let is_root = folder.join("Cargo.lock").is_file() && folder.join("cook").is_file();
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         let is_installed = path.ends_with("node_modules") || path.ends_with("target");
         if path.is_dir() && !is_root && !is_installed {
-            found.extend(pages(&path));
-        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.extend(with_ending(&path, ending));
+        } else if path.extension().is_some_and(|extension| extension == ending) {
             found.push(path);
         }
     }
