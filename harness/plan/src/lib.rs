@@ -35,7 +35,7 @@ pub mod thickness;
 
 pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
-pub use note::{Note, Objects};
+pub use note::{Gravity, Note, Objects};
 pub use notes::of as notes;
 pub use outside::{MOST_BODIES, Outside};
 pub use quality::{Quality, Technique};

@@ -72,7 +72,7 @@ pub enum Note {
     ClipsToWhite {
         /// The objects concerned.
         objects: Objects,
-        /// Linear radiance of the first object times the exposure, in the darkest channel.
+        /// Linear radiance of the first object times the exposure, in the brightest channel.
         radiance: f32,
     },
     /// Meshes with one normal per face, although the technique needs one per position.
@@ -127,6 +127,13 @@ pub enum Note {
         /// The rung that draws the clear one.
         rung: Rung,
     },
+    /// A clear body around the camera, under a rung that draws bodies from outside alone.
+    EyeWithin {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+    },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
         /// The objects concerned.
@@ -156,6 +163,46 @@ pub struct Objects {
     pub first: String,
     /// Number of objects.
     pub count: usize,
+}
+
+/// How much a note says is wrong, the gravest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Gravity {
+    /// Bodies are not seen, or stand where they are not.
+    Wrong,
+    /// What was asked for is left out.
+    LeftOut,
+    /// The picture is right, and black or white.
+    Exposure,
+    /// A figure about the picture, or how its input was mended.
+    Figure,
+}
+
+impl Note {
+    /// Returns how much the note says is wrong.
+    #[must_use]
+    pub fn gravity(&self) -> Gravity {
+        match self {
+            Self::NothingInView
+            | Self::Within { .. }
+            | Self::ShareSpace { .. }
+            | Self::EyeWithin { .. }
+            | Self::NotSolid { .. }
+            | Self::InsideOut { .. }
+            | Self::Open { .. } => Gravity::Wrong,
+            Self::BackNotDrawn { .. }
+            | Self::ThinWall { .. }
+            | Self::FactorsAlone { .. }
+            | Self::AllEnters { .. }
+            | Self::LampInside { .. }
+            | Self::NotClear { .. } => Gravity::LeftOut,
+            Self::Black { .. } | Self::ClipsToWhite { .. } => Gravity::Exposure,
+            Self::StoppedEarly { .. }
+            | Self::Solved { .. }
+            | Self::HardEdges { .. }
+            | Self::NegativeRadiance { .. } => Gravity::Figure,
+        }
+    }
 }
 
 impl fmt::Display for Objects {
@@ -215,7 +262,7 @@ impl fmt::Display for Note {
             ),
             Self::ClipsToWhite { objects, radiance } => write!(
                 f,
-                "{objects}: radiance {} in every channel is shown as plain white; make the lights weaker, or give an --exposure of \
+                "{objects}: radiance of up to {} is shown as plain white; make the lights weaker, or give an --exposure of \
                  about {:.0e}",
                 short(*radiance),
                 0.5 / radiance
@@ -240,6 +287,10 @@ impl fmt::Display for Note {
             Self::Within { objects, around, rung } => write!(
                 f,
                 "{objects}: inside the clear `{around}`, of which rung `{rung}` shows nothing but the surroundings; --rung reference shows what is inside"
+            ),
+            Self::EyeWithin { objects, rung } => write!(
+                f,
+                "{objects}: the camera stands inside, and rung `{rung}` draws nothing of it; --rung reference looks out of it"
             ),
             Self::ShareSpace { objects, with, there, rung: Rung::Reference } => write!(
                 f,
@@ -308,6 +359,7 @@ mod tests {
                 Note::Within { objects: objects(2), around: "glass".to_owned(), rung },
                 "2 objects, first `hare`: inside the clear `glass`, of which rung `convex-8` shows nothing",
             ),
+            line_of(Note::EyeWithin { objects: objects(1), rung }, "object `hare`: the camera stands inside"),
             line_of(
                 Note::ShareSpace {
                     objects: objects(1),

@@ -75,6 +75,10 @@ impl Case<'_> {
         if scatters && enclosed::count(self.object, &self.scene.lights) > 0 {
             notes.push(Note::LampInside { objects: objects.clone(), rung });
         }
+        let is_followed = self.object.material.is_clear() && matches!(rung, Rung::Inside { .. } | Rung::Surface);
+        if is_followed && self.object.mesh.encloses(self.scene.camera.eye) {
+            notes.push(Note::EyeWithin { objects: objects.clone(), rung });
+        }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
             notes.push(Note::HardEdges { objects: objects.clone(), rung });
@@ -176,7 +180,7 @@ impl Case<'_> {
         let shown = (self.request.exposure * radiance.as_vec3() * material.base_color).min(Vec3::splat(f32::MAX));
         let encoded = lapidary_srgb::encode_color(lapidary_srgb::tone_curve(shown.min(Vec3::splat(1e9))));
         (encoded.min_element() >= WHITE)
-            .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.min_element() })
+            .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.max_element() })
     }
 }
 

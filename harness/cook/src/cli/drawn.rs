@@ -329,12 +329,42 @@ pub(super) fn planned(scene: &Scene, settings: &Settings) -> Vec<Note> {
     lapidary_plan::notes(scene, &settings.request(), &decisions.iter().collect::<Vec<_>>())
 }
 
-/// Prints warnings on stderr, and what of the scene's file is not drawn.
+/// Most lines of warnings: with the command's own output they fit on a screen.
+const MOST_LINES: usize = 20;
+
+/// Prints warnings on stderr, the gravest first, and what of the scene's file is not drawn.
 pub(super) fn tell(notes: &[Note], scene: &Scene) {
-    for note in notes {
-        output::remark(&note.to_string());
+    for line in said(notes, &scene.lacking) {
+        output::remark(&line);
     }
-    for lacking in &scene.lacking {
-        output::remark(&format!("not drawn, though the file asks for it: {lacking}"));
+}
+
+/// Returns the lines of warnings. Of too many the last are counted.
+fn said(notes: &[Note], lacking: &[String]) -> Vec<String> {
+    let mut notes: Vec<&Note> = notes.iter().collect();
+    notes.sort_by_key(|note| note.gravity());
+    let lacking = lacking.iter().map(|lacking| format!("not drawn, though the file asks for it: {lacking}"));
+    let mut lines: Vec<String> = notes.into_iter().map(ToString::to_string).chain(lacking).collect();
+    if lines.len() > MOST_LINES {
+        let more = lines.len() - (MOST_LINES - 1);
+        lines.truncate(MOST_LINES - 1);
+        lines.push(format!("and {more} warnings more; `cook plan` lists all"));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gravest_come_first_and_all_fit_on_a_screen() {
+        let negative = |pixels| Note::NegativeRadiance { file: "sky.exr".to_owned(), pixels, least: -1.0 };
+        let few = said(&[negative(1), Note::NothingInView], &["skins".to_owned()]);
+        assert!(few.len() == 3 && few[0].starts_with("nothing is in view") && few[2].ends_with("skins"), "{few:?}");
+        let notes: Vec<Note> = (0..30).map(negative).chain([Note::NothingInView]).collect();
+        let many = said(&notes, &vec!["skins".to_owned(); 9]);
+        assert!(many.len() == MOST_LINES && many[0].starts_with("nothing is in view"), "{many:?}");
+        assert_eq!(many[MOST_LINES - 1], "and 21 warnings more; `cook plan` lists all");
     }
 }

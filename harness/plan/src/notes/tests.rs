@@ -227,3 +227,12 @@ fn bodies_that_share_space_with_clear_ones_are_named() {
     let apart = vec![ball("one", 1.0, 0.0, glass()), ball("other", 0.5, 1.5, glass())];
     assert_eq!(said_of(apart, &usual()), [""; 0]);
 }
+
+#[test]
+fn a_camera_inside_a_clear_body_is_named() {
+    let mut scene = named("ruby");
+    scene.camera.eye = scene.bounds().centre();
+    scene.camera.target = scene.camera.eye + glam::Vec3::X;
+    one(&scene, &usual(), "object `ruby`: the camera stands inside");
+    assert_eq!(said(&scene, &by("reference")), [""; 0]);
+}

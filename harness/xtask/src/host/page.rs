@@ -168,7 +168,7 @@ pub(super) fn index(rows: Vec<Vec<String>>, frames: &[Listed]) -> String {
     table(&mut page, &["recipe", "what it draws or computes", "passes"], rows);
     page.push_str(FRAMES);
     for (command, steps) in frames {
-        let _ = writeln!(page, "### `./cook frame {command}`\n");
+        let _ = writeln!(page, "### `./cook frame {command} --out frame`\n");
         table(
             &mut page,
             &["pass", "recipe", "entry points, or buffers", "vertices or workgroups", "times"],
