@@ -1,5 +1,5 @@
-// NAME: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/NAME.wgsl, and use its
-// structs and functions.
+// NAME: the forms that one finds elsewhere, kept to show where they fail.
+// They follow wgsl/NAME.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
 // NAME_difference as the formula is printed.

@@ -99,3 +99,17 @@ fn the_clone_that_is_run_is_the_one_that_changes() {
     let launcher = std::fs::read_to_string(repository::place().join("cook")).expect("the launcher");
     assert!(launcher.contains(&format!("export {}=$cd_root", repository::VARIABLE)), "the launcher says nothing");
 }
+
+/// A name as long as the longest of the cookbook's leaves no line wider than a page.
+#[test]
+fn long_names_fit_on_a_page() {
+    let copy = cookbook();
+    let longest = lapidary_cookbook::modules().iter().map(|module| module.name.len()).max().expect("modules");
+    let name = "n".repeat(longest);
+    succeeds(copy.path(), &["new", &name, "--in", "."]);
+    for file in [format!("wgsl/{name}.wgsl"), format!("wgsl/naive/{name}.wgsl")] {
+        let text = std::fs::read_to_string(copy.path().join(&file)).expect("written");
+        let wide = text.lines().find(|line| line.chars().count() > 120);
+        assert_eq!(wide, None, "{file}");
+    }
+}
