@@ -30,11 +30,6 @@ impl Extent {
         Self { least: self.least - margin, greatest: self.greatest + margin }
     }
 
-    /// Whether a point lies in the box.
-    pub(super) fn holds(&self, point: DVec3) -> bool {
-        point.cmpge(self.least).all() && point.cmple(self.greatest).all()
-    }
-
     /// Whether two boxes have a point in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
         self.least.cmple(other.greatest).all() && other.least.cmple(self.greatest).all()

@@ -24,7 +24,6 @@ pub enum Geometry {
 pub(crate) struct Bodies {
     bodies: Vec<Body>,
     tree: Bvh,
-    extents: Vec<Extent>,
     /// Whether another body may lie within each, or share space with it: their boxes meet.
     shares: Vec<bool>,
     mattes: Mattes,
@@ -69,23 +68,7 @@ impl Bodies {
         };
         let bodies = objects.iter().zip(&extents).enumerate().map(body).collect();
         let touching = reach_back(&extents);
-        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), extents, mattes, touching }
-    }
-
-    /// Returns the clear bodies around a point; those beyond the largest number are left out.
-    pub(super) fn around(&self, point: DVec3) -> Within {
-        let mut within = Within::default();
-        for (number, body) in self.bodies.iter().enumerate().filter(|(number, _)| self.extents[*number].holds(point)) {
-            let is_around = !self.mattes.has(number)
-                && match body {
-                    Body::Convex(planes) => planes.holds(point),
-                    Body::Triangles(triangles) => triangles.hold(point),
-                };
-            if is_around {
-                within = within.with(number).unwrap_or(within);
-            }
-        }
-        within
+        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), mattes, touching }
     }
 
     /// Finds the next surface that a ray within some bodies crosses, and which way; `left` is the face that it comes from.
@@ -229,11 +212,6 @@ impl Planes {
         Self { sieve: Sieve::new(&planes, extent), planes, reach_back: reach_back(std::slice::from_ref(extent)) }
     }
 
-    /// Whether a point lies inside.
-    fn holds(&self, point: DVec3) -> bool {
-        self.planes.iter().all(|plane| plane.height(point) < 0.0)
-    }
-
     /// Finds the nearest plane that the ray runs towards, except the face just left: no epsilon is
     /// needed.
     fn leave(&self, origin: DVec3, direction: DVec3, left: Option<usize>) -> Option<Found> {
@@ -372,15 +350,6 @@ impl Triangles {
         let reach_back = reach_back(&extents);
         let padded: Vec<Extent> = extents.iter().map(|extent| extent.padded(reach_back)).collect();
         Self { tree: Bvh::new(&padded), cells: OnceLock::new(), corners, normals, reach_back }
-    }
-
-    /// Whether a point lies inside: a ray from it leaves before it enters.
-    fn hold(&self, point: DVec3) -> bool {
-        // Along no axis, so that few rays run within a surface.
-        let direction = DVec3::new(0.36, 0.48, 0.8);
-        let first = |side| self.first(point, direction, None, f64::INFINITY, side).map(|(distance, ..)| distance);
-        let entered = first(Side::Front).unwrap_or(f64::INFINITY);
-        first(Side::Back).is_some_and(|left| left < entered)
     }
 
     /// Builds a grid with cells as wide as a triangle of the mean area.

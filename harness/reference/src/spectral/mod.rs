@@ -40,7 +40,7 @@ use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surroundings};
-use within::Order;
+use within::{Order, Within};
 
 /// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
@@ -313,7 +313,7 @@ impl<'scene> Job<'scene> {
         let mattes = Mattes::new(scene, settings.lit_by_environment.then_some(settings.environment));
         let view = View::new(&scene.camera, settings.width, settings.height);
         let bodies = Bodies::with_mattes(&scene.objects, settings.geometry, mattes);
-        let around_eye = bodies.around(view.eye);
+        let around_eye = Within::around(scene.camera.eye, &scene.objects);
         Self {
             view,
             surroundings: Surroundings {

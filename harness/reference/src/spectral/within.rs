@@ -4,6 +4,7 @@
 //! Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics Tools 7(2), 2002). Of equal priority is the
 //! body of the smaller volume, so that a body that lies wholly inside another one is seen there.
 
+use glam::Vec3;
 use lapidary_scene::Object;
 
 /// Largest number of bodies around a point; a ray that enters a further one is lost.
@@ -42,6 +43,13 @@ pub(super) struct Within {
 const _: () = assert!(lapidary_scene::gltf::MAX_OBJECTS <= 1 << u16::BITS && MOST <= u16::BITS as usize);
 
 impl Within {
+    /// The clear bodies around a point; those beyond the largest number are left out.
+    pub(super) fn around(point: Vec3, objects: &[Object]) -> Self {
+        let is_around = |object: &Object| !object.material.is_opaque() && object.mesh.encloses(point);
+        let bodies = objects.iter().enumerate().filter(|(_, object)| is_around(object));
+        bodies.fold(Self::default(), |within, (body, _)| within.with(body).unwrap_or(within))
+    }
+
     pub(super) fn bodies(&self) -> impl Iterator<Item = usize> {
         self.bodies[..usize::from(self.count)].iter().map(|body| usize::from(*body))
     }

@@ -29,7 +29,7 @@ fn surroundings<'a>(
     energy_bound: f64,
 ) -> Surroundings<'a> {
     let bodies = Bodies::new(objects, geometry);
-    let around_eye = bodies.around(eye);
+    let around_eye = Within::around(eye.as_vec3(), objects);
     Surroundings { bodies, order: Order::of(objects), around_eye, environment, energy_bound }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Corners 0 and 1 of the triangle's three lie elsewhere: the first value's bytes are those of the corner 1, and so on.
+/// The triangle whose corners of these numbers are moved to (5, 6, 7) and (8, 9, 10) by a sparse accessor.
 fn moved(places: [u16; 2], change: impl FnOnce(&mut Value)) -> Result<Scene, SceneError> {
     let mut data = binary();
     data.extend(places.into_iter().flat_map(u16::to_le_bytes));

@@ -13,7 +13,7 @@ fn layer(bottom: f64, top: f64) -> Object {
     let around = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|normal| side(normal, 512.0));
     let planes = [around.as_slice(), &[side(DVec3::Z, top), side(-DVec3::Z, -bottom)]].concat();
     let mesh = Polyhedron::from_planes(&planes).unwrap().to_mesh(Averaging::Angle);
-    Object::new("layer", mesh, Material::standard())
+    Object::new("layer", mesh, Material { transmission: 1.0, ..Material::standard() })
 }
 
 fn with_priority(mut object: Object, priority: i32) -> Object {
@@ -145,10 +145,10 @@ fn an_eye_within_bodies_sees_out_of_them() {
     let base_color = DVec3::new(0.5, 0.25, 1.0);
     let optics = [Optics { base_color, ..absorbing(1.5, 0.2) }, absorbing(2.4, 0.7)];
     let eye = DVec3::new(0.3, -1.25, 0.2);
-    let bodies = Bodies::new(&objects, Geometry::Planes);
-    assert_eq!(bodies.around(eye).bodies().collect::<Vec<_>>(), [0, 1]);
-    assert_eq!(bodies.around(DVec3::new(0.3, -2.0, 0.2)).bodies().collect::<Vec<_>>(), [0]);
-    assert!(bodies.around(DVec3::Y).is_empty());
+    let around = |point: DVec3| Within::around(point.as_vec3(), &objects);
+    assert_eq!(around(eye).bodies().collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(around(DVec3::new(0.3, -2.0, 0.2)).bodies().collect::<Vec<_>>(), [0]);
+    assert!(around(DVec3::Y).is_empty());
     // In radiance 1 without absorption it sees the colour of the outer body, through which all light comes.
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
     let without = optics.map(|optics| Optics { absorption: DVec3::ZERO, ..optics });
