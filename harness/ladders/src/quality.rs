@@ -55,5 +55,6 @@ fn shown(technique: Technique) -> &'static str {
         Technique::Diffusion => "diffusion",
         Technique::Opaque => "opaque",
         Technique::ThinWall => "thin wall",
+        Technique::Among => "clear, among other bodies",
     }
 }

@@ -1,5 +1,6 @@
 //! How a body is drawn: the rung or technique that its material and shape require, and why.
 
+use super::among;
 use super::effect::Effect;
 use super::numbers::short;
 use super::quality::Technique;
@@ -37,6 +38,8 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
     }
     let (technique, reason) = if material.transmission == 0.0 {
         (Technique::Opaque, "opaque: transmission 0, and nothing inside scatters".to_owned())
+    } else if let Some(reason) = among_others(object, scene, request) {
+        (Technique::Among, format!("clear: transmission {}; {reason}", material.transmission))
     } else if material.thickness == 0.0 {
         let reason = format!("clear: transmission {}, and a thin wall: thickness 0", material.transmission);
         (Technique::ThinWall, reason)
@@ -46,6 +49,21 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
         (technique, format!("clear: transmission {}, thickness {}; {shape}", material.transmission, material.thickness))
     };
     (Choice::By(technique), reason)
+}
+
+/// Returns why light that leaves a clear body has to be followed through others; `None` if it has not.
+fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option<String> {
+    let has = |effect| !request.without.has(effect);
+    let inside = object.material.thickness > 0.0;
+    if let Some(other) = among::shares_space(object, scene).filter(|_| inside && has(Effect::Nested)) {
+        return Some(format!("it shares space with {}", other.name));
+    }
+    if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
+        return Some(format!("in the view it overlaps {}, which is clear", other.name));
+    }
+    let stands = request.outside.is_none() && request.quality != Quality::Fast && has(Effect::Around);
+    let around = among::stands_in(object, scene).filter(|_| stands && inside)?;
+    Some(format!("it stands within the bounds of {}", around.name))
 }
 
 /// Returns the technique for a clear body with an inside, and the reason. The proxy is never

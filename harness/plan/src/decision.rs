@@ -1,6 +1,7 @@
 //! What a material requires: for each effect, whether it is on under the rung that draws the
 //! object, and the property that decides.
 
+use super::among;
 use super::casting::{self, Casting};
 use super::choice::{self, Choice};
 use super::chosen::Chosen;
@@ -93,6 +94,7 @@ fn way_of(geometry: Geometry) -> &'static str {
         Geometry::Walk => "a convex stone's planes, by a map of its facets",
         Geometry::Bvh => "a hierarchy of all triangles",
         Geometry::Triangles => "a loop over all triangles",
+        Geometry::Scene => "a hierarchy of all bodies' triangles",
     }
 }
 
@@ -136,6 +138,9 @@ impl Case<'_> {
             Effect::Footprint => self.footprint(),
             Effect::ScreenTrace => self.screen_trace(),
             Effect::BoundsTrace => self.bounds_trace(),
+            Effect::Nested => self.nested(),
+            Effect::Behind => self.behind(),
+            Effect::Around => self.around(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::HalfSpace => self.half_space(),
@@ -181,7 +186,8 @@ impl Case<'_> {
         let Rung::Inside { geometry: used, .. } = self.rung else {
             return off(if self.rung == Rung::Surface { self.no_inside() } else { self.not_clear() });
         };
-        let serves = used == geometry || used == Geometry::Triangles && effect == Effect::BvhTrace;
+        let by_triangles = matches!(used, Geometry::Triangles | Geometry::Scene);
+        let serves = used == geometry || by_triangles && effect == Effect::BvhTrace;
         if !serves {
             return off(format!("the rung {} finds facets by {}", self.rung, way_of(used)));
         }
@@ -205,9 +211,55 @@ impl Case<'_> {
         }
     }
 
+    /// Whether light goes from one body to another.
+    fn is_among(&self) -> bool {
+        self.rung.geometry_of_inside() == Some(Geometry::Scene)
+    }
+
+    /// Returns an answer that needs a rung by which light goes from one body to another.
+    fn among(&self, called: Option<String>, not: &str) -> Answer {
+        match called {
+            _ if !self.is_gem() => off(self.not_clear()),
+            None => off(not),
+            Some(called) if self.is_among() => on(called),
+            Some(called) => off(format!("the rung {} follows light through one body, though {called}", self.rung)),
+        }
+    }
+
+    fn nested(&self) -> Answer {
+        let clear = self.scene.objects.iter().filter(|object| object.material.is_clear() && self.is_among());
+        // Light goes through all clear bodies, so that it is called for by any of them.
+        let shares = |object: &Object| {
+            among::shares_space(object, self.scene).map(|other| format!("{} shares space with {}", object.name, other.name))
+        };
+        let called = std::iter::once(self.object).chain(clear).find_map(shares);
+        self.among(called, "it shares space with no body")
+    }
+
+    fn behind(&self) -> Answer {
+        let other = among::overlaps(self.object, self.scene, self.request.size);
+        self.among(
+            other.map(|other| format!("in the view it overlaps {}", other.name)),
+            "in the view it overlaps no clear body",
+        )
+    }
+
+    fn around(&self) -> Answer {
+        match self.scene.beside_stones().count() {
+            _ if !self.is_gem() => off(self.not_clear()),
+            _ if !self.is_among() => off(format!("the rung {} follows light through one body", self.rung)),
+            0 => off("all bodies are clear"),
+            _ if self.request.outside == Some(Outside::Environment) => off("asked for: environment"),
+            1 => on("beside 1 body that is not clear"),
+            count => on(format!("beside {count} bodies that are not clear")),
+        }
+    }
+
     fn absorption(&self) -> Answer {
-        // Copies may have colours of their own.
-        let coloured = self.object.materials().find(|material| material.attenuation_color != Vec3::ONE);
+        // Copies may have colours of their own, and light may go through other bodies.
+        let others = self.scene.objects.iter().filter(|object| self.is_among() && object.material.is_clear());
+        let materials = self.object.materials().chain(others.flat_map(|object| object.materials()));
+        let coloured = materials.into_iter().find(|material| material.absorbs());
         let material = coloured.as_ref().unwrap_or(self.material);
         match self.rung {
             Rung::Surface => off(self.no_inside()),
@@ -231,7 +283,10 @@ impl Case<'_> {
             Rung::Surface => return off(self.no_inside()),
             _ => return off(self.not_clear()),
         };
-        let called = match self.material.dispersion {
+        let disperses = |material: &&Material| material.dispersion != Dispersion::None;
+        let others = self.scene.objects.iter().map(|object| &object.material).filter(|material| material.is_clear());
+        let other = others.filter(disperses).find(|_| self.is_among());
+        let called = match Some(self.material).filter(disperses).or(other).unwrap_or(self.material).dispersion {
             Dispersion::None => return off("dispersion 0"),
             Dispersion::Abbe(value) => format!("dispersion {} (V_d {})", short(value), short(20.0 / value)),
             Dispersion::Sellmeier(mineral) => {
@@ -247,6 +302,7 @@ impl Case<'_> {
     fn instances(&self) -> Answer {
         match &self.object.copies {
             None => off("shown once"),
+            Some(_) if self.is_among() => off("light goes from one copy to another"),
             Some(copies) if self.is_gem() => on(format!("{} copies of one shape", copies.places.len())),
             Some(_) => off("drawn as one mesh: only clear stones are drawn by copies"),
         }
@@ -270,6 +326,7 @@ impl Case<'_> {
     fn screen_trace(&self) -> Answer {
         match self.request.outside {
             _ if !self.is_gem() => off(self.not_clear()),
+            _ if self.is_among() => off("light meets bodies by their triangles"),
             Some(Outside::Screen) => self.meets("asked for, ", usize::MAX),
             _ => off("not asked for"),
         }
@@ -278,6 +335,7 @@ impl Case<'_> {
     fn bounds_trace(&self) -> Answer {
         match self.request.outside {
             _ if !self.is_gem() => off(self.not_clear()),
+            _ if self.is_among() => off("light meets bodies by their triangles"),
             Some(Outside::Bodies) => self.meets("asked for, ", MOST_BODIES),
             Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),
@@ -551,7 +609,9 @@ impl Case<'_> {
     }
 
     fn environment(&self) -> Answer {
-        if self.is_gem() {
+        if self.is_among() && self.scene.beside_stones().count() > 0 {
+            on("light around falls on bodies that it shows")
+        } else if self.is_gem() {
             off("a clear surface sends nothing back diffusely")
         } else {
             on("the surface sends light from all around back")
@@ -674,7 +734,7 @@ impl Case<'_> {
 
     fn spot(&self) -> Answer {
         let spots = self.scene.lights.iter().filter(|light| matches!(light, Light::Spot { .. })).count();
-        if self.is_gem() {
+        if self.is_gem() && !(self.is_among() && self.scene.beside_stones().count() > 0) {
             return off("clear bodies are lit by the environment");
         }
         match spots {

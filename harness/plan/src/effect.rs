@@ -59,6 +59,12 @@ effects! {
     ScreenTrace = "screen_trace", "EFFECT_SCREEN_TRACE";
     /// Bounds of other bodies, met by what leaves a clear stone.
     BoundsTrace = "bounds_trace", "EFFECT_BOUNDS_TRACE";
+    /// Bodies within clear ones, or in the same space.
+    Nested = "nested", "EFFECT_NESTED";
+    /// Clear bodies behind clear ones.
+    Behind = "behind", "EFFECT_BEHIND";
+    /// Bodies that are not clear, met by what leaves a clear one, by their triangles.
+    Around = "around", "EFFECT_AROUND";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

@@ -89,7 +89,7 @@ impl Ladder {
             Technique::Cdrf => (WALKS, |row| row.measure == "as drawn"),
             Technique::Translucent | Technique::Diffusion => (WALKS, |row| row.measure == "walks"),
             Technique::OpticalPath => ("nats of error", |row| row.measure == "nats"),
-            Technique::Opaque | Technique::ThinWall => ("", |_| false),
+            Technique::Opaque | Technique::ThinWall | Technique::Among => ("", |_| false),
         };
         let judged: Vec<&Row> = rows.iter().filter(|row| name(row)).collect();
         let mut names: Vec<&str> = Vec::new();

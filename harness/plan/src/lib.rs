@@ -16,6 +16,7 @@
 //! # Ok::<(), lapidary_scene::SceneError>(())
 //! ```
 
+mod among;
 pub mod casting;
 mod choice;
 mod chosen;

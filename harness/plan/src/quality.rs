@@ -57,11 +57,13 @@ pub enum Technique {
     Opaque,
     /// Clear body without an inside.
     ThinWall,
+    /// Clear body whose light goes through others, or comes from bodies around it.
+    Among,
 }
 
 /// The rungs of each technique by quality, in the order of [`Quality::ALL`]. A better quality has
 /// the same rung as the one before it if nothing more expensive cuts the error by a tenth.
-const RUNGS: [(Technique, [Rung; 3]); 8] = [
+const RUNGS: [(Technique, [Rung; 3]); 9] = [
     (
         Technique::Convex,
         [
@@ -91,6 +93,14 @@ const RUNGS: [(Technique, [Rung; 3]); 8] = [
     (Technique::Diffusion, [diffusion(32), diffusion(64), diffusion(128)]),
     (Technique::Opaque, [Rung::Diffuse(Reflectance::Lambert); 3]),
     (Technique::ThinWall, [Rung::Surface; 3]),
+    (
+        Technique::Among,
+        [
+            inside(Geometry::Scene, 8, Spectrum::One),
+            inside(Geometry::Scene, 16, Spectrum::Separate(3)),
+            inside(Geometry::Scene, 32, Spectrum::Separate(3)),
+        ],
+    ),
 ];
 
 const fn inside(geometry: Geometry, hits: u32, spectrum: Spectrum) -> Rung {
@@ -107,7 +117,7 @@ const fn paths(cells: u32, method: Method) -> Rung {
 
 impl Technique {
     /// All techniques, those with a ladder first.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Convex,
         Self::Concave,
         Self::Cdrf,
@@ -116,6 +126,7 @@ impl Technique {
         Self::Diffusion,
         Self::Opaque,
         Self::ThinWall,
+        Self::Among,
     ];
 
     /// Returns what it draws, in a few words.
@@ -130,6 +141,7 @@ impl Technique {
             Self::Diffusion => "light through a body, by diffusion",
             Self::Opaque => "opaque",
             Self::ThinWall => "thin wall",
+            Self::Among => "clear, among other bodies",
         }
     }
 

@@ -16,19 +16,33 @@ impl<T: Copy> Remembered<T> {
 
     /// Returns the measure of a mesh, which must follow from its positions and triangles alone.
     pub(crate) fn of(&self, mesh: &Mesh, measure: impl FnOnce(&Mesh) -> T) -> T {
-        let mut hasher = DefaultHasher::new();
-        mesh.indices.hash(&mut hasher);
-        mesh.positions.iter().for_each(|position| position.to_array().map(f32::to_bits).hash(&mut hasher));
-        let key = hasher.finish();
+        self.by_key(key(&[mesh]), || measure(mesh))
+    }
+
+    /// Returns a measure of two meshes in their order.
+    pub(crate) fn of_both(&self, one: &Mesh, other: &Mesh, measure: impl FnOnce(&Mesh, &Mesh) -> T) -> T {
+        self.by_key(key(&[one, other]), || measure(one, other))
+    }
+
+    fn by_key(&self, key: u64, measure: impl FnOnce() -> T) -> T {
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known().get(&key).copied() {
             return found;
         }
         // Not under the lock: others may measure other meshes meanwhile.
-        let found = measure(mesh);
+        let found = measure();
         known().insert(key, found);
         found
     }
+}
+
+fn key(meshes: &[&Mesh]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for mesh in meshes {
+        mesh.indices.hash(&mut hasher);
+        mesh.positions.iter().for_each(|position| position.to_array().map(f32::to_bits).hash(&mut hasher));
+    }
+    hasher.finish()
 }
 
 #[cfg(test)]

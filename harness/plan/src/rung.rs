@@ -45,6 +45,8 @@ pub enum Geometry {
     Triangles,
     /// A bounding volume hierarchy of the triangles.
     Bvh,
+    /// A bounding volume hierarchy of the triangles of all bodies: light goes from one to another.
+    Scene,
 }
 
 /// How the wavelength dependence of the refractive index is computed.
@@ -68,7 +70,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 39] = [
+pub const NAMES: [&str; 41] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -88,6 +90,8 @@ pub const NAMES: [&str; 39] = [
     "convex-8+31",
     "triangles-1",
     "bvh-8",
+    "scene-16",
+    "scene-16+3",
     "lambert",
     "lambert-shadowed",
     "wrap",
@@ -111,17 +115,18 @@ pub const NAMES: [&str; 39] = [
 ];
 /// The grammar of rung names, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+split|+WAVELENGTHS], such as \
-     convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
+     convex-8+31, or scene-HITS[+WAVELENGTHS], such as scene-16; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
      quadrature, spherical, power, drift, blur, or diffusion[-limited]-CELLS with 16 to 128 cells, such as diffusion-64, or \
      (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 cells, such as godunov-64; \
      for both reference";
 
-const GEOMETRIES: [(&str, Geometry); 5] = [
+const GEOMETRIES: [(&str, Geometry); 6] = [
     ("proxy", Geometry::Proxy),
     ("convex", Geometry::Convex),
     ("walk", Geometry::Walk),
     ("triangles", Geometry::Triangles),
     ("bvh", Geometry::Bvh),
+    ("scene", Geometry::Scene),
 ];
 
 impl Rung {
@@ -135,6 +140,7 @@ impl Rung {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
             Self::Inside { geometry: Geometry::Walk, .. } => "gem_walk",
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
+            Self::Inside { geometry: Geometry::Scene, .. } => "gem_scene",
             Self::Diffuse(_) => "cdrf_shading",
             Self::OpticalPath(_) => "optical_path_shading",
             Self::Diffusion(_) => "diffusion_shading",
@@ -246,6 +252,9 @@ impl FromStr for Rung {
                 count => return Err(format!("{count} wavelengths; 3 to {MOST_WAVELENGTHS} are followed")),
             },
         };
+        if geometry == Geometry::Scene && !matches!(spectrum, Spectrum::One | Spectrum::Separate(_)) {
+            return Err(format!("{name} follows one index of refraction, or wavelengths of its own, as in {name}-{hits}+3"));
+        }
         Ok(Self::Inside { geometry, hits, spectrum })
     }
 }
@@ -276,6 +285,7 @@ mod tests {
             ("proxy-65", "at most 64"),
             ("proxy-1+2", "3 to 61"),
             ("proxy-1+", "a rung is"),
+            ("scene-8+tracker", "scene-8+3"),
             ("", "a rung is"),
             ("godunov-65", "a multiple of 8"),
             ("godunov-8", "16 to 256"),

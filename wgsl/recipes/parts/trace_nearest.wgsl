@@ -15,17 +15,51 @@
 override TRAVERSAL_LOOP: bool = false;
 // Uses Möller and Trumbore's test with an epsilon instead of the watertight test.
 override TRIANGLE_NAIVE: bool = false;
+// Rays also meet triangles through which they enter a solid. Where two surfaces lie in one place, a ray
+// enters one solid before it leaves the other.
+override TRAVERSAL_TWO_SIDED: bool = false;
 
 // Capacity of the stack: three children for each of 16 levels of nodes. The builder of the hierarchy
 // must respect this limit.
 const TRACE_STACK = 48u;
 // A distance farther than any hit.
 const TRACE_FAR = 1e37f;
+// How far ahead of its place a surface counts through which a ray enters, in margins of the ray: over the
+// cosine of the angle of incidence, and at most.
+const TRACE_AHEAD = 2.0f;
+const TRACE_MOST_AHEAD = 64.0f;
 // The first number of a child that is a leaf.
 const TRACE_LEAF = 0x40000000u;
 
+// A second triangle that a ray does not meet, and the margin of the ray.
+var<private> trace_also_left: u32;
+var<private> trace_margin: f32;
+
 // The children that are still to be visited. Private, so that it is set to 0 once, not for each ray.
 var<private> trace_stack: array<u32, TRACE_STACK>;
+
+// Tests a triangle from the side that a ray comes from.
+fn trace_either_side(
+    hit: BvhTraceHit, ray: BvhTraceRay, a: vec3f, b: vec3f, c: vec3f, triangle: u32, left: u32
+) -> BvhTraceHit {
+    if (triangle == trace_also_left) {
+        return hit;
+    }
+    let normal = cross(b - a, c - a);
+    let along = dot(normal, ray.direction);
+    if (along >= 0.0f) {
+        return bvh_trace_triangle(hit, ray, a, b, c, triangle, left);
+    }
+    // Two surfaces in one place are met at distances that differ by the margin over the cosine.
+    let ahead = ray.margin * min(TRACE_AHEAD * length(normal) / -along, TRACE_MOST_AHEAD);
+    var before = hit;
+    before.distance += ahead;
+    let found = bvh_trace_triangle(before, ray, a, c, b, triangle, left);
+    if (found.triangle != triangle) {
+        return hit;
+    }
+    return BvhTraceHit(max(found.distance - ahead, 0.0f), found.barycentrics.yx, triangle);
+}
 
 // Tests the triangle of a given number.
 fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) -> BvhTraceHit {
@@ -34,6 +68,9 @@ fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) 
     let c = corners[3u * triangle + 2u].xyz;
     if (TRIANGLE_NAIVE) {
         return bvh_trace_triangle_naive(hit, ray, a, b, c, triangle, left);
+    }
+    if (TRAVERSAL_TWO_SIDED) {
+        return trace_either_side(hit, ray, a, b, c, triangle, left);
     }
     return bvh_trace_triangle(hit, ray, a, b, c, triangle, left);
 }
@@ -77,6 +114,9 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     var hit = bvh_trace_start(TRACE_FAR);
     let whole = bvh_trace_bounds(nodes[0]);
     let ray = bvh_trace_ray(origin, direction, whole.lower, whole.upper);
+    if (TRAVERSAL_TWO_SIDED) {
+        trace_margin = ray.margin;
+    }
     if (TRAVERSAL_LOOP) {
         for (var triangle = 0u; triangle < arrayLength(&corners) / 3u; triangle += 1u) {
             hit = trace_triangle(hit, ray, triangle, left);

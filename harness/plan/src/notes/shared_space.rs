@@ -1,31 +1,17 @@
 //! Bodies that share space with clear ones.
 
 use super::merge::add;
-use crate::{Decisions, Note, Objects, Rung};
-use glam::Vec3;
+use crate::among::{self, Share};
+use crate::{Decisions, Effect, Note, Objects, Rung};
 use lapidary_scene::{Bounds, Object, Scene};
-
-/// Number of vertices of a body of which it is asked whether they lie in the other.
-const VERTICES: usize = 32;
-/// Products of these vertices and the other's triangles for one pair: fewer vertices are asked for if there are more.
-const MOST_PRODUCTS: usize = 1 << 22;
-/// How far below its surface a body's vertex is looked at, as a share of the body's radius: a body that only touches another
-/// one shares no space with it.
-const BELOW: f32 = 1e-4;
 
 /// A body with its box.
 struct Boxed<'a> {
     object: &'a Object,
     rung: Rung,
+    /// Whether what shares its space is shown.
+    nested: bool,
     bounds: Bounds,
-}
-
-/// How much of a body lies within another one.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Share {
-    Nothing,
-    Part,
-    All,
 }
 
 /// Says which bodies lie within clear ones whose rungs show nothing of them, and which share space with clear ones.
@@ -34,19 +20,21 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
     let bodies: Vec<Boxed<'_>> = all
         .map(|(object, decisions)| {
             let bounds = Bounds::of(object.mesh.positions.iter().copied());
-            Boxed { object, rung: decisions.rung, bounds }
+            let nested = decisions.rung == Rung::Reference || decisions.has(Effect::Nested);
+            Boxed { object, rung: decisions.rung, nested, bounds }
         })
         .collect();
     let mut notes = Vec::new();
+    // Light from one body to another is followed, and priorities decide what is there.
     let clear = bodies.iter().enumerate().filter(|(_, body)| body.follows_light());
     for (place, around) in clear {
-        for (other, body) in bodies.iter().enumerate().filter(|(other, body)| *other != place && body.meets(around)) {
+        for (other, body) in bodies.iter().enumerate().filter(|(other, body)| *other != place && among::meet(body.bounds, around.bounds)) {
             let objects = Objects { first: body.object.name.clone(), count: 1 };
             match body.share_within(around) {
                 Share::Nothing => {}
                 Share::All if around.share_within(body) != Share::All => {
-                    let (around, rung) = (around.object.name.clone(), around.rung);
-                    if rung != Rung::Reference {
+                    let (around, rung, nested) = (around.object.name.clone(), around.rung, around.nested);
+                    if !nested {
                         add(&mut notes, Note::Within { objects, around, rung });
                     }
                 }
@@ -69,10 +57,6 @@ impl Boxed<'_> {
         self.object.material.is_clear() && matches!(self.rung, Rung::Inside { .. } | Rung::Reference)
     }
 
-    fn meets(&self, other: &Self) -> bool {
-        self.bounds.min.cmple(other.bounds.max).all() && other.bounds.min.cmple(self.bounds.max).all()
-    }
-
     /// Whether this body is there where both are: an opaque one is, and of clear ones as
     /// [`Material::priority`](lapidary_scene::Material::priority) has it.
     fn comes_before(&self, other: &Self) -> bool {
@@ -81,23 +65,7 @@ impl Boxed<'_> {
         key(self) > key(other) || key(self) == key(other) && smaller()
     }
 
-    /// Returns how many of the body's vertices lie within another one.
     fn share_within(&self, around: &Self) -> Share {
-        let mesh = &self.object.mesh;
-        let asked = VERTICES.min(MOST_PRODUCTS / around.object.mesh.triangle_count().max(1)).max(1);
-        let step = mesh.positions.len().div_ceil(asked).max(1);
-        let below = BELOW * self.bounds.radius();
-        let vertices =
-            mesh.positions.iter().zip(mesh.normals.iter().chain(std::iter::repeat(&Vec3::ZERO))).step_by(step);
-        let (mut within, mut count) = (0, 0);
-        for (position, normal) in vertices {
-            count += 1;
-            within += usize::from(around.object.mesh.encloses(*position - below * *normal));
-        }
-        match within {
-            0 => Share::Nothing,
-            _ if within == count => Share::All,
-            _ => Share::Part,
-        }
+        among::share_within(self.object, around.object)
     }
 }

@@ -1,6 +1,6 @@
 //! Structs of the recipes as bytes, filled by field name.
 
-use glam::{Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{Mat3, Mat4, UVec2, UVec4, Vec2, Vec3, Vec4};
 use lapidary_specialise::layout::StructLayout;
 use naga::ScalarKind;
 use std::collections::BTreeMap;
@@ -104,6 +104,12 @@ impl Words for u32 {
 }
 
 impl Words for UVec2 {
+    fn words(self) -> (ScalarKind, Vec<u32>) {
+        (ScalarKind::Uint, self.to_array().to_vec())
+    }
+}
+
+impl Words for UVec4 {
     fn words(self) -> (ScalarKind, Vec<u32>) {
         (ScalarKind::Uint, self.to_array().to_vec())
     }

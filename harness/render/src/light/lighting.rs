@@ -9,6 +9,7 @@ use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::objects::mesh_buffers::Shapes;
 use crate::settings::Settings;
+use crate::stone::hierarchy::Hierarchy;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_plan::Effect;
 use lapidary_scene::light::Falloff;
@@ -25,6 +26,7 @@ pub(crate) struct Lighting<'a> {
     harmonics: OnceCell<Buffer>,
     screen: OnceCell<Picture>,
     bodies: OnceCell<Buffer>,
+    hierarchy: OnceCell<Hierarchy>,
     /// What keeps light from others.
     pub(crate) shapes: Shapes,
     /// Size of the largest picture in samples.
@@ -35,8 +37,8 @@ impl<'a> Lighting<'a> {
     /// Takes the scene's lights and bodies and the settings' environment, for pictures of up to this
     /// size in samples.
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
-        let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
-        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, shapes, size }
+        let (environment, lights, around, harmonics, screen, bodies, hierarchy, shapes) = Default::default();
+        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, hierarchy, shapes, size }
     }
 
     /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how
@@ -60,6 +62,15 @@ impl<'a> Lighting<'a> {
             let records = from_bodies::all(self.scene, self.around()).iter().map(Body::record).collect();
             builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
         })
+    }
+
+    /// Returns the hierarchy of all bodies.
+    pub(crate) fn hierarchy(&self, builder: &mut Builder<'_>) -> Result<&Hierarchy, RenderError> {
+        if let Some(known) = self.hierarchy.get() {
+            return Ok(known);
+        }
+        let made = Hierarchy::new(builder, self.scene, self.settings)?;
+        Ok(self.hierarchy.get_or_init(|| made))
     }
 
     /// Returns the environment's texture.
@@ -111,7 +122,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3 and 7 to 9 of group 0; 4, 5
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 15 of group 0; 4, 5
     /// and 10 are shadow maps, 6 is the view of the screen.
     pub(crate) fn shared(
         &self,
@@ -134,6 +145,9 @@ impl<'a> Lighting<'a> {
         }
         if builder.binds(pipeline, 0, from_bodies::BINDING) {
             shared.push((from_bodies::BINDING, self.bodies(builder).into()));
+        }
+        if Hierarchy::is_read(builder, pipeline) {
+            shared.extend(self.hierarchy(builder)?.shared(builder, pipeline));
         }
         Ok(shared)
     }

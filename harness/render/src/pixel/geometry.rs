@@ -98,7 +98,7 @@ impl<'a> Stone<'a> {
             Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(|| not_convex(convex::obstacle(mesh)))?),
             Geometry::Walk => Data::Walk(Walked::of_mesh(mesh).map_err(not_convex)?),
             Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
-            Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
+            Geometry::Bvh | Geometry::Scene => Data::Bvh(Leaves::of(mesh)),
         };
         Ok(Self { mesh, normals, paper_centre: settings.gem.paper_centre, data })
     }

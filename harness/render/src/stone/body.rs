@@ -1,6 +1,7 @@
 //! A stone in a frame: its material, its mesh and its copies, bound to a pipeline.
 
 use super::geometry::{Geometries, check_steps};
+use super::hierarchy::Hierarchy;
 use super::material::GemMaterial;
 use super::wavelengths::{GemWavelength, wavelengths};
 use crate::error::RenderError;
@@ -12,7 +13,7 @@ use crate::objects::part::Drawn;
 use crate::settings::Settings;
 use glam::Vec3;
 use lapidary_plan::{Effect, Rung};
-use lapidary_scene::{Copies, Material, Object, Place};
+use lapidary_scene::{Copies, Material, Object, Place, Scene};
 
 /// Adds an object to the frame, with the resources that `pipeline` reads.
 pub(crate) fn add(
@@ -68,6 +69,36 @@ pub(crate) fn add(
         }
         let groups = vec![builder.bind(pipeline, 1, &first), builder.bind(pipeline, 2, &second)];
         Body { name: name.clone(), groups, vertices, instances: copied }
+    }))
+}
+
+/// Adds a body of the recipe `gem_scene`, whose triangles are in the hierarchy of all, with the resources that `pipeline`
+/// reads.
+pub(crate) fn add_among(
+    builder: &mut Builder<'_>,
+    pipeline: PipelineId,
+    Drawn { object, name, .. }: &Drawn<'_>,
+    (hierarchy, scene): (&Hierarchy, &Scene),
+    rung: Rung,
+) -> Result<Body, RenderError> {
+    check_steps(builder, rung, hierarchy.steps)?;
+    let number = scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
+    let triangles = hierarchy.triangles(number);
+    let vertices = 3 * triangles.len() as u32;
+    let (wavelengths, indices) = hierarchy.wavelengths(rung.spectrum());
+    Ok(builder.of_object(name, |builder| {
+        let mut bound: Vec<(u32, Bound)> = Vec::new();
+        if builder.binds(pipeline, 1, 0) {
+            bound.push((0, builder.storage("triangles", bytemuck::cast_slice(triangles)).into()));
+        }
+        if builder.binds(pipeline, 1, 1) {
+            bound.push((1, builder.records("wavelengths", wavelengths, wgpu::BufferUsages::STORAGE).into()));
+        }
+        if builder.binds(pipeline, 1, 2) {
+            bound.push((2, builder.storage("indices of refraction", bytemuck::cast_slice(&indices)).into()));
+        }
+        let groups = vec![builder.bind(pipeline, 1, &bound)];
+        Body { name: name.clone(), groups, vertices, instances: 1 }
     }))
 }
 

@@ -23,6 +23,7 @@ fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'s
     };
     let mut constants = decisions.constants();
     constants.extend([
+        ("TRAVERSAL_TWO_SIDED", flag(rung.geometry() == Geometry::Scene)),
         ("TRAVERSAL_LOOP", flag(rung.geometry() == Geometry::Triangles)),
         ("DISPERSION_FORM", f64::from(form)),
         ("WAVELENGTHS", f64::from(wavelengths)),
@@ -62,8 +63,15 @@ pub(crate) fn pass(
             formats,
             depth: Some(DEPTH_FORMAT),
         })?;
-        let add = |drawn| body::add(builder, pipeline, drawn, part.rung, part.settings);
-        let bodies = objects.into_iter().map(add).collect::<Result<Vec<_>, _>>()?;
+        let mut bodies = Vec::new();
+        for drawn in objects {
+            bodies.push(if part.rung.geometry() == Geometry::Scene {
+                let hierarchy = lighting.hierarchy(builder)?;
+                body::add_among(builder, pipeline, drawn, (hierarchy, lighting.scene), part.rung)?
+            } else {
+                body::add(builder, pipeline, drawn, part.rung, part.settings)?
+            });
+        }
         variants.push(Variant {
             shared: lighting.shared(builder, pipeline)?,
             targets: formats.len(),

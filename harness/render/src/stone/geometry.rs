@@ -64,6 +64,8 @@ impl<'a> Geometries<'a> {
                 // Few walks take more than four passes, even over the longest lists.
                 Self { indices, facets, record: Some(("stone", stone)), steps: 4 * map.longest_list() as u64 }
             }
+            // Its triangles are in the hierarchy of all bodies.
+            Geometry::Scene => Self { indices, facets: Vec::new(), record: None, steps: 0 },
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(&mesh.positions, &mesh.indices);
                 let words = bvh.words();

@@ -1,0 +1,107 @@
+//! Which bodies share space, and which are seen through one another.
+
+use crate::casting::bounds;
+use crate::remembered::Remembered;
+use glam::{Vec2, Vec3};
+use lapidary_scene::{Bounds, Object, Scene, clip_from_world};
+
+/// Number of vertices of a body of which it is asked whether they lie in the other.
+const VERTICES: usize = 32;
+/// Products of these vertices and the other's triangles for one pair: fewer vertices are asked for if there are more.
+const MOST_PRODUCTS: usize = 1 << 22;
+/// How far below its surface a body's vertex is looked at, as a share of the body's radius: a body that only touches another
+/// one shares no space with it.
+const BELOW: f32 = 1e-4;
+/// Number of bodies above which none is compared with the others: all pairs of more would take longer than drawing them.
+const MOST_COMPARED: usize = 256;
+
+/// How much of a body lies within another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Share {
+    Nothing,
+    Part,
+    All,
+}
+
+/// Returns how many of a body's vertices lie within another one.
+pub(crate) fn share_within(body: &Object, around: &Object) -> Share {
+    static FOUND: Remembered<Share> = Remembered::new();
+    FOUND.of_both(&body.mesh, &around.mesh, |mesh, around| {
+        let asked = VERTICES.min(MOST_PRODUCTS / around.triangle_count().max(1)).max(1);
+        let step = mesh.positions.len().div_ceil(asked).max(1);
+        let below = BELOW * Bounds::of(mesh.positions.iter().copied()).radius();
+        let vertices =
+            mesh.positions.iter().zip(mesh.normals.iter().chain(std::iter::repeat(&Vec3::ZERO))).step_by(step);
+        let (mut within, mut count) = (0, 0);
+        for (position, normal) in vertices {
+            count += 1;
+            within += usize::from(around.encloses(*position - below * *normal));
+        }
+        match within {
+            0 => Share::Nothing,
+            _ if within == count => Share::All,
+            _ => Share::Part,
+        }
+    })
+}
+
+/// Whether two boxes have a point in common.
+pub(crate) fn meet(one: Bounds, other: Bounds) -> bool {
+    one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
+}
+
+/// Returns the other bodies of a scene that is not too large, with their boxes.
+fn others<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = (&'a Object, Bounds)> {
+    let compared = if scene.objects.len() > MOST_COMPARED { &[] } else { &scene.objects[..] };
+    let others = compared.iter().filter(|other| !std::ptr::eq(*other, object) && other.mesh.triangle_count() > 0);
+    others.map(|other| (other, bounds(other)))
+}
+
+/// Returns the first body that shares space with a clear one, which has an inside.
+pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    let own = bounds(object);
+    let shares = |other: &Object| {
+        share_within(other, object) != Share::Nothing || has_inside(other) && share_within(object, other) != Share::Nothing
+    };
+    others(object, scene).find(|(other, bounds)| meet(*bounds, own) && shares(other)).map(|(other, _)| other)
+}
+
+/// Whether light that enters the body leaves it elsewhere.
+fn has_inside(object: &Object) -> bool {
+    !object.material.is_clear() || object.material.thickness > 0.0
+}
+
+/// Returns the first clear body that overlaps another clear one in a picture of this size: their boxes do.
+pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
+    let own = seen(bounds(object), scene, size)?;
+    let overlaps = |bounds: Bounds| {
+        seen(bounds, scene, size).is_some_and(|other| own.0.cmplt(other.1).all() && other.0.cmplt(own.1).all())
+    };
+    let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() && overlaps(*bounds));
+    found.map(|(other, _)| other)
+}
+
+/// Returns the first body that is not clear and whose box reaches around a clear one's middle.
+pub(crate) fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    let middle = bounds(object).centre();
+    let reaches = |bounds: &Bounds| bounds.min.cmple(middle).all() && bounds.max.cmpge(middle).all();
+    let found = others(object, scene).find(|(other, bounds)| !other.material.is_clear() && reaches(bounds));
+    found.map(|(other, _)| other)
+}
+
+/// Returns the smallest rectangle of the picture around a box, from -1 to 1; `None` if nothing of it is in the picture.
+fn seen(bounds: Bounds, scene: &Scene, [width, height]: [u32; 2]) -> Option<(Vec2, Vec2)> {
+    let matrix = clip_from_world(scene, width, height);
+    let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    for corner in 0..8 {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        let clip = matrix * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0);
+        if clip.w <= 0.0 {
+            return Some((Vec2::NEG_ONE, Vec2::ONE));
+        }
+        let place = clip.truncate().truncate() / clip.w;
+        (least, most) = (least.min(place), most.max(place));
+    }
+    let (least, most) = (least.max(Vec2::NEG_ONE), most.min(Vec2::ONE));
+    least.cmplt(most).all().then_some((least, most))
+}

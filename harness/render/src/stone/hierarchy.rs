@@ -1,0 +1,189 @@
+//! All bodies of a scene in one hierarchy of triangles, as the recipe `gem_scene` reads them.
+
+use super::restraint::{LEAST_DIFFERENCE, largest_radiance};
+use crate::error::RenderError;
+use crate::frame::record::Record;
+use crate::frame::{Bound, Buffer, Builder, PipelineId};
+use crate::settings::Settings;
+use glam::{UVec4, Vec3, Vec4};
+use lapidary_plan::Spectrum;
+use lapidary_scene::{Bvh, Material, Object, Scene, spectrum};
+
+/// Bindings in group 0, from the nodes on.
+const FIRST: u32 = 11;
+/// Stands for no body.
+const NONE: u32 = u32::MAX;
+
+/// A body: an object, or one of its copies.
+struct Body {
+    /// Index of the object in the scene.
+    object: usize,
+    material: Material,
+    volume: f64,
+    /// Range of the body's triangles among all.
+    triangles: std::ops::Range<usize>,
+}
+
+/// The hierarchy in a frame.
+pub(crate) struct Hierarchy {
+    buffers: [Buffer; 5],
+    /// The bodies' materials, by number.
+    materials: Vec<Material>,
+    /// Numbers of each object's triangles, in the order of the leaves.
+    triangles: Vec<Vec<u32>>,
+    /// Number of turns of the loop over nodes for one ray; few take more.
+    pub(super) steps: u64,
+}
+
+impl Hierarchy {
+    /// Adds the bodies of a scene to the frame.
+    ///
+    /// # Errors
+    /// If they are beyond the limits that every device offers.
+    pub(crate) fn new(builder: &mut Builder<'_>, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene);
+        // Where bodies share space, the one of the lower number is there; nothing is within an opaque one.
+        bodies.sort_by(|one, other| {
+            let key = |body: &Body| (!body.material.is_clear(), std::cmp::Reverse(body.material.priority));
+            key(one).cmp(&key(other)).then(one.volume.total_cmp(&other.volume))
+        });
+        let mut of_triangle = vec![0_u32; indices.len() / 3];
+        for (number, body) in (0..).zip(&bodies) {
+            of_triangle[body.triangles.clone()].fill(number);
+        }
+        let bvh = Bvh::build(&positions, &indices);
+        let mut corners = bvh.corners.clone();
+        let mut triangles = vec![Vec::new(); scene.objects.len()];
+        for ((number, corners), original) in (0..).zip(corners.chunks_exact_mut(3)).zip(&bvh.order) {
+            let body = of_triangle[*original as usize];
+            corners.iter_mut().for_each(|corner| corner.w = body as f32);
+            triangles[bodies[body as usize].object].push(number);
+        }
+        let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize].extend(0.0)).collect();
+        let limits = wgpu::Limits::default();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let bytes = size_of_val(&corners[..]) as u64;
+        if bytes > limit {
+            return Err(RenderError::TooLarge { what: "the scene's triangles".to_owned(), bytes, limit });
+        }
+        let start = Record::new("SceneStart")
+            .with("within", around(scene, &bodies))
+            .with("throughput_limit", throughput_limit(settings));
+        let records: Vec<Record> = bodies.iter().map(|body| record(&body.material)).collect();
+        let words = bvh.words();
+        let buffers = builder.of_object("", |builder| {
+            let [nodes, corners, normals] = [
+                ("nodes", bytemuck::cast_slice(&words)),
+                ("corners", bytemuck::cast_slice(&corners)),
+                ("corner normals", bytemuck::cast_slice(&normals)),
+            ]
+            .map(|(what, contents)| builder.storage(what, contents));
+            let bodies = builder.records("scene's bodies", records, wgpu::BufferUsages::STORAGE);
+            [nodes, corners, normals, bodies, builder.record("start", start)]
+        });
+        let levels = u64::from((bvh.order.len().max(1)).ilog2()) + 1;
+        let materials = bodies.into_iter().map(|body| body.material).collect();
+        Ok(Self { buffers, materials, triangles, steps: 16 * levels })
+    }
+
+    /// Returns the resources that `pipeline` reads.
+    pub(crate) fn shared(&self, builder: &Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
+        let bound = (FIRST..).zip(self.buffers);
+        bound.filter(|(binding, _)| builder.binds(pipeline, 0, *binding)).map(|(b, buffer)| (b, buffer.into())).collect()
+    }
+
+    /// Whether `pipeline` reads any of them.
+    pub(crate) fn is_read(builder: &Builder<'_>, pipeline: PipelineId) -> bool {
+        builder.binds(pipeline, 0, FIRST)
+    }
+
+    /// Returns the numbers of an object's triangles.
+    pub(super) fn triangles(&self, object: usize) -> &[u32] {
+        &self.triangles[object]
+    }
+
+    /// Returns `SceneWavelength` of the recipe for each wavelength, and every body's index of refraction at each.
+    pub(super) fn wavelengths(&self, spectrum: Spectrum) -> (Vec<Record>, Vec<f32>) {
+        let weights = |weights: glam::DMat3| Record::new("SceneWavelength").with("weights", weights.as_mat3());
+        match spectrum {
+            Spectrum::Separate(3) => {
+                let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(glam::DMat3::from_diagonal);
+                let index = |channel: usize| self.materials.iter().map(move |body| body.channel_indices()[channel]);
+                (channels.into_iter().map(weights).collect(), (0..3).flat_map(index).collect())
+            }
+            Spectrum::Separate(count) => {
+                let all = spectrum::weights(count as usize);
+                let index = |at: f64| self.materials.iter().map(move |body| body.index_at(at) as f32);
+                let indices = all.iter().flat_map(|wavelength| index(wavelength.nanometres)).collect();
+                (all.iter().map(|wavelength| weights(wavelength.weights)).collect(), indices)
+            }
+            _ => (vec![weights(glam::DMat3::IDENTITY)], self.materials.iter().map(|body| body.ior).collect()),
+        }
+    }
+}
+
+/// The bodies of a scene and the vertices of all.
+#[derive(Default)]
+struct Bodies {
+    bodies: Vec<Body>,
+    positions: Vec<Vec3>,
+    /// One for each position; 0 where the surface is flat.
+    normals: Vec<Vec3>,
+    indices: Vec<u32>,
+}
+
+impl Bodies {
+    fn of(scene: &Scene) -> Self {
+        let mut all = Self::default();
+        for (number, object) in scene.objects.iter().enumerate() {
+            let first = all.indices.len() / 3;
+            let offset = all.positions.len() as u32;
+            let is_flat = object.material.is_clear();
+            all.positions.extend(&object.mesh.positions);
+            let normals = object.mesh.normals.iter().copied().filter(|_| !is_flat);
+            all.normals.extend(normals.chain(std::iter::repeat(Vec3::ZERO)).take(object.mesh.positions.len()));
+            all.indices.extend(object.mesh.indices.iter().map(|index| offset + index));
+            all.add(number, object, first);
+        }
+        all
+    }
+
+    /// Adds an object whose triangles start at `first`, or its copies.
+    fn add(&mut self, number: usize, object: &Object, first: usize) {
+        let copies = object.copies.as_ref().map_or(1, |copies| copies.places.len());
+        let each = object.mesh.triangle_count() / copies.max(1);
+        let volume = object.mesh.volume_and_area().0 / copies.max(1) as f64;
+        for (copy, material) in object.materials().enumerate() {
+            let start = first + copy * each;
+            self.bodies.push(Body { object: number, material, volume, triangles: start..start + each });
+        }
+    }
+}
+
+/// Returns `SceneBody` of the recipe.
+fn record(material: &Material) -> Record {
+    let kind = match material {
+        _ if !material.is_clear() => 2_u32,
+        _ if material.thickness == 0.0 => 1,
+        _ => 0,
+    };
+    let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
+    let record = Record::new("SceneBody").with("base_color", material.base_color).with("index", material.ior);
+    record.with("absorption", absorption).with("kind", kind)
+}
+
+/// Returns the bodies around the eye, as the recipe's rays know them: the first four.
+fn around(scene: &Scene, bodies: &[Body]) -> UVec4 {
+    let has_inside = |body: &Body| body.material.is_clear() && body.material.thickness > 0.0;
+    let is_around = |body: &Body| has_inside(body) && scene.objects[body.object].mesh.encloses(scene.camera.eye);
+    let mut within = [NONE; 4];
+    let found = (0..).zip(bodies).filter(|(_, body)| is_around(body)).map(|(number, _): (u32, _)| 2 * number);
+    within.iter_mut().zip(found).for_each(|(place, number)| *place = number);
+    within.into()
+}
+
+/// Returns the share of light below which a ray ends: less than half a step of an 8-bit display.
+fn throughput_limit(settings: &Settings) -> f32 {
+    let shown = f64::from(settings.exposure) * f64::from(largest_radiance(&settings.environment).max(1.0));
+    (LEAST_DIFFERENCE / shown).min(f64::from(f32::MAX)) as f32
+}

@@ -1,0 +1,403 @@
+// gem_scene: clear bodies among other bodies: light goes through all of them, by one hierarchy of all triangles.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980 (the tree of
+//   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
+//   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
+// requires: absorption, bvh_trace, cdrf, environment, fresnel, proxy_geometry, refraction
+// parts: surroundings, lights, harmonics, trace_nearest
+//
+// Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
+// set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
+// the strongest ray that waits is followed next, until HITS surfaces were found.
+
+// Clear bodies share space: each ray knows the bodies that it is within. Called for by a body that lies
+// within a clear one, or overlaps it.
+override EFFECT_NESTED: bool = false;
+// Light that leaves a clear body comes from clear bodies too. Called for by two clear bodies that
+// overlap in the view.
+override EFFECT_BEHIND: bool = false;
+// Light that leaves a clear body comes from bodies that are not clear. Called for by any of them.
+override EFFECT_AROUND: bool = false;
+// The interpolated normal refracts and reflects. Called for by a clear body with smooth normals.
+override EFFECT_SMOOTH: bool = false;
+// Light is absorbed on its way through bodies. Called for by KHR_materials_volume with an attenuation
+// colour below white.
+override EFFECT_ABSORPTION: bool = false;
+// The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
+override EFFECT_DISPERSION: bool = false;
+// Light from all around falls on bodies that are not clear.
+override EFFECT_ENVIRONMENT: bool = false;
+// Number of entries of `wavelengths`, each followed by a tree of rays of its own.
+override WAVELENGTHS: u32 = 1u;
+// Number of surfaces at which light is split, for each wavelength, after the one that the eye sees.
+override BOUNCES: u32 = 16u;
+// The light that rays still carry when they end is taken from the environment along them; if false, it
+// is dropped.
+override REST_FROM_ENVIRONMENT: bool = true;
+
+// Number of rays that wait. Of more, the weakest end.
+const SCENE_WAITING = 6u;
+// Stands for no body.
+const SCENE_NONE = 0xffffffffu;
+// Values of SceneBody.kind.
+const SCENE_THIN_WALL = 1u;
+const SCENE_OPAQUE = 2u;
+
+struct GemView {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+}
+
+// A body. Of two that share space, the one of the lower number is there.
+struct SceneBody {
+    // Factor for light that enters, or for light that an opaque body sends back; linear RGB.
+    base_color: vec3f,
+    // Index of refraction at the d line, relative to the air.
+    index: f32,
+    // Absorption per unit of length.
+    absorption: vec3f,
+    // 0 for a clear body, else SCENE_THIN_WALL or SCENE_OPAQUE.
+    kind: u32,
+}
+
+struct SceneStart {
+    // The bodies around the eye, as in SceneRay.
+    within: vec4u,
+    // Share of the light below which a ray ends.
+    throughput_limit: f32,
+}
+
+// One of the wavelengths that are followed.
+struct SceneWavelength {
+    // Contribution of its radiance to the pixel's, both in linear RGB.
+    weights: mat3x3f,
+}
+
+@group(0) @binding(0) var<uniform> view: GemView;
+// The root is first.
+@group(0) @binding(11) var<storage, read> nodes: array<BvhTraceNode>;
+// Three per triangle, counter-clockwise from outside, in the order of the leaves. w is the number of
+// the body.
+@group(0) @binding(12) var<storage, read> corners: array<vec4f>;
+// Normals at these corners; 0 where the triangle is flat.
+@group(0) @binding(13) var<storage, read> corner_normals: array<vec4f>;
+@group(0) @binding(14) var<storage, read> scene_bodies: array<SceneBody>;
+@group(0) @binding(15) var<storage, read> scene_start: SceneStart;
+// The numbers of the drawn body's triangles.
+@group(1) @binding(0) var<storage, read> triangles: array<u32>;
+@group(1) @binding(1) var<storage, read> wavelengths: array<SceneWavelength>;
+// The bodies' indices of refraction, wavelength by wavelength.
+@group(1) @binding(2) var<storage, read> indices: array<f32>;
+
+struct GemVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    // Weights of the second and the third corner.
+    @location(1) barycentrics: vec2f,
+    @location(2) @interpolate(flat, either) triangle: u32,
+}
+
+// A corner of a triangle of the body.
+@vertex
+fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
+    let triangle = triangles[vertex / 3u];
+    let corner = vertex % 3u;
+    let position = corners[3u * triangle + corner].xyz;
+    let barycentrics = vec2f(f32(corner == 1u), f32(corner == 2u));
+    return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, barycentrics, triangle);
+}
+
+// A ray outside or inside bodies.
+struct SceneRay {
+    position: vec3f,
+    // Unit vector.
+    direction: vec3f,
+    // Share of light that it carries, per channel; 0 if it has ended.
+    throughput: vec3f,
+    // The clear bodies around it, the one whose matter is there first: twice the number, and 1 more once
+    // light has taken the body's colour. The rest is SCENE_NONE.
+    within: vec4u,
+    // The triangle that it left last, and another one in the same place: it cannot meet them again
+    // immediately.
+    left: vec2u,
+}
+
+var<private> scene_waiting: array<SceneRay, SCENE_WAITING>;
+// Radiance found so far.
+var<private> scene_found: vec3f;
+
+fn scene_strength(ray: SceneRay) -> f32 {
+    return max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
+}
+
+// Ends a ray: the rest of its light comes from the environment.
+fn scene_end(ray: SceneRay) {
+    if (REST_FROM_ENVIRONMENT) {
+        scene_found += ray.throughput * surroundings_radiance(ray.direction);
+    }
+}
+
+// Lets a ray wait, in place of the weakest one.
+fn scene_wait(ray: SceneRay) {
+    if (scene_strength(ray) <= scene_start.throughput_limit) {
+        return;
+    }
+    var place = 0u;
+    var least = scene_strength(scene_waiting[0]);
+    for (var other = 1u; other < SCENE_WAITING; other++) {
+        let strength = scene_strength(scene_waiting[other]);
+        if (strength < least) {
+            place = other;
+            least = strength;
+        }
+    }
+    if (least < scene_strength(ray)) {
+        scene_end(scene_waiting[place]);
+        scene_waiting[place] = ray;
+    } else {
+        scene_end(ray);
+    }
+}
+
+// Takes the strongest ray that waits.
+fn scene_next() -> SceneRay {
+    var place = 0u;
+    var most = scene_strength(scene_waiting[0]);
+    for (var other = 1u; other < SCENE_WAITING; other++) {
+        let strength = scene_strength(scene_waiting[other]);
+        if (strength > most) {
+            place = other;
+            most = strength;
+        }
+    }
+    let ray = scene_waiting[place];
+    scene_waiting[place].throughput = vec3f(0.0f);
+    return ray;
+}
+
+// Whether a body is among those around a ray.
+fn scene_holds(within: vec4u, body: u32) -> bool {
+    return any((within >> vec4u(1u)) == vec4u(body));
+}
+
+// The bodies around a ray, and one more; the fifth is left out.
+fn scene_with(within: vec4u, body: u32) -> vec4u {
+    if (EFFECT_NESTED) {
+        // In an ordered list, each place keeps its body, or takes the new one or that of the place before.
+        return clamp(vec4u(2u * body), vec4u(0u, within.xyz), within);
+    }
+    return vec4u(2u * body, SCENE_NONE, SCENE_NONE, SCENE_NONE);
+}
+
+// The bodies around a ray without one of them.
+fn scene_without(within: vec4u, body: u32) -> vec4u {
+    if (EFFECT_NESTED) {
+        return select(within, vec4u(within.yzw, SCENE_NONE), within >= vec4u(2u * body));
+    }
+    return vec4u(SCENE_NONE);
+}
+
+// The colour that light takes from the matter that it is in, if it has not taken it yet.
+fn scene_color(within: vec4u) -> vec3f {
+    if (within.x == SCENE_NONE || (within.x & 1u) != 0u) {
+        return vec3f(1.0f);
+    }
+    return scene_bodies[within.x >> 1u].base_color;
+}
+
+// The bodies around a ray once light has taken the colour of the first.
+fn scene_colored(within: vec4u) -> vec4u {
+    return vec4u(within.x | 1u, within.yzw);
+}
+
+fn scene_index(within: vec4u, wavelength: u32) -> f32 {
+    if (within.x == SCENE_NONE) {
+        return 1.0f;
+    }
+    if (EFFECT_DISPERSION) {
+        return indices[wavelength * arrayLength(&scene_bodies) + (within.x >> 1u)];
+    }
+    return scene_bodies[within.x >> 1u].index;
+}
+
+// The normal at a place on a triangle: interpolated, or that of its plane where the triangle is flat or
+// the normals cancel.
+fn scene_normal(triangle: u32, barycentrics: vec2f, flat_normal: vec3f) -> vec3f {
+    let first = 1.0f - barycentrics.x - barycentrics.y;
+    let normal = first * corner_normals[3u * triangle].xyz
+        + barycentrics.x * corner_normals[3u * triangle + 1u].xyz
+        + barycentrics.y * corner_normals[3u * triangle + 2u].xyz;
+    let squared = dot(normal, normal);
+    if (squared < 1e-6f) {
+        return flat_normal;
+    }
+    return normal * inverseSqrt(squared);
+}
+
+// Radiance that an opaque body sends: Lambert's law, without shadows.
+fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
+    var irradiance = vec3f(0.0f);
+    if (EFFECT_ENVIRONMENT) {
+        let weights = cdrf_harmonic_weights(0.0f);
+        irradiance = harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+    }
+    for (var number = 0u; number < arrayLength(&lights); number++) {
+        let arrival = light_arrival(lights[number], position);
+        irradiance += max(dot(arrival.direction, normal), 0.0f) * arrival.irradiance;
+    }
+    return 0.318309886f * base_color * irradiance;
+}
+
+// The two rays that leave a surface.
+struct SceneSplit {
+    reflected: vec3f,
+    refracted: vec3f,
+    // Share of light that is reflected.
+    reflectance: f32,
+}
+
+// `facing` is the normal of the triangle's plane on the ray's side, `smooth_normal` the one that
+// reflects and refracts. Where that would send light to the wrong side of the triangle, or faces away,
+// the triangle's plane stands in. What one normal does not reflect, it refracts: no light is lost.
+fn scene_split(direction: vec3f, facing: vec3f, smooth_normal: vec3f, relative_index: f32) -> SceneSplit {
+    var normal = facing;
+    if (EFFECT_SMOOTH) {
+        if (dot(smooth_normal, direction) < 0.0f) {
+            normal = smooth_normal;
+        }
+    }
+    let refracted = refraction_refract(direction, normal, relative_index);
+    var split = SceneSplit(refraction_reflect(direction, normal), refracted.direction, 1.0f);
+    if (!refracted.total) {
+        split.reflectance = fresnel_dielectric(-dot(direction, normal), relative_index);
+    }
+    if (EFFECT_SMOOTH) {
+        if (dot(split.reflected, facing) <= 0.0f) {
+            split.reflected = refraction_reflect(direction, facing);
+        }
+        if (split.reflectance < 1.0f && dot(split.refracted, facing) >= 0.0f) {
+            let straight = refraction_refract(direction, facing, relative_index);
+            split.refracted = straight.direction;
+            if (straight.total) {
+                split.reflectance = 1.0f;
+            }
+        }
+    }
+    return split;
+}
+
+// Follows a ray that has come to a triangle, at a distance.
+fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
+    var ray = arriving;
+    let a = corners[3u * hit.triangle];
+    let b = corners[3u * hit.triangle + 1u].xyz;
+    let c = corners[3u * hit.triangle + 2u].xyz;
+    let number = u32(a.w);
+    let body = scene_bodies[number];
+    if (EFFECT_ABSORPTION) {
+        if (ray.within.x != SCENE_NONE) {
+            ray.throughput *= absorption_transmittance(scene_bodies[ray.within.x >> 1u].absorption, hit.distance);
+        }
+    }
+    ray.position = a.xyz + hit.barycentrics.x * (b - a.xyz) + hit.barycentrics.y * (c - a.xyz);
+    ray.left = vec2u(hit.triangle, BVH_TRACE_NONE);
+    if (hit.distance <= TRACE_MOST_AHEAD * trace_margin) {
+        ray.left.y = arriving.left.x;
+    }
+    let outward = proxy_geometry_face_normal(a.xyz, b, c);
+    let enters = dot(outward, ray.direction) < 0.0f;
+    let facing = select(-outward, outward, enters);
+    if (body.kind == SCENE_OPAQUE) {
+        let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+        scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
+        return;
+    }
+    var behind = ray.within;
+    if (body.kind != SCENE_THIN_WALL) {
+        if (enters != scene_holds(ray.within, number)) {
+            behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
+        }
+        if ((behind.x >> 1u) == (ray.within.x >> 1u)) {
+            // The same matter on both sides: no surface.
+            ray.within = behind;
+            scene_wait(ray);
+            return;
+        }
+    }
+    var smooth_normal = facing;
+    if (EFFECT_SMOOTH) {
+        smooth_normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+        smooth_normal = select(-smooth_normal, smooth_normal, enters);
+    }
+    let index_before = scene_index(ray.within, wavelength);
+    var split = SceneSplit(vec3f(0.0f), ray.direction, 0.0f);
+    var color = vec3f(1.0f);
+    if (body.kind == SCENE_THIN_WALL) {
+        split.reflected = refraction_reflect(ray.direction, facing);
+        split.reflectance = fresnel_dielectric(-dot(ray.direction, facing), body.index);
+        color = body.base_color;
+    } else {
+        split = scene_split(ray.direction, facing, smooth_normal, scene_index(behind, wavelength) / index_before);
+        color = scene_color(ray.within) * scene_color(behind);
+        behind = scene_colored(behind);
+    }
+    var reflected = ray;
+    reflected.direction = split.reflected;
+    reflected.throughput *= split.reflectance;
+    scene_wait(reflected);
+    ray.direction = split.refracted;
+    ray.throughput *= (1.0f - split.reflectance) * color;
+    ray.within = behind;
+    scene_wait(ray);
+}
+
+// Whether a ray may meet another body.
+fn scene_is_followed(ray: SceneRay) -> bool {
+    return EFFECT_BEHIND || EFFECT_AROUND || ray.within.x != SCENE_NONE;
+}
+
+// Radiance of one wavelength.
+fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
+    scene_found = vec3f(0.0f);
+    for (var place = 0u; place < SCENE_WAITING; place++) {
+        scene_waiting[place].throughput = vec3f(0.0f);
+    }
+    let way = input.position - view.eye;
+    var ray = SceneRay(view.eye, normalize(way), vec3f(1.0f), scene_start.within, vec2u(BVH_TRACE_NONE));
+    var hit = BvhTraceHit(length(way), input.barycentrics, input.triangle);
+    for (var hits = 0u; hits <= BOUNCES; hits++) {
+        if (hits > 0u) {
+            ray = scene_next();
+            if (scene_strength(ray) == 0.0f) {
+                break;
+            }
+            hit = bvh_trace_start(TRACE_FAR);
+            if (scene_is_followed(ray)) {
+                trace_also_left = ray.left.y;
+                hit = trace_nearest(ray.position, ray.direction, ray.left.x);
+            }
+        }
+        if (hit.triangle == BVH_TRACE_NONE) {
+            scene_found += ray.throughput * surroundings_radiance(ray.direction);
+        } else {
+            scene_surface(ray, hit, wavelength);
+        }
+    }
+    for (var place = 0u; place < SCENE_WAITING; place++) {
+        scene_end(scene_waiting[place]);
+    }
+    return scene_found;
+}
+
+// Radiance that the body sends to the eye, linear, with an alpha of 1.
+@fragment
+fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
+    if (EFFECT_DISPERSION) {
+        var radiance = vec3f(0.0f);
+        for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
+            radiance += wavelengths[wavelength].weights * scene_radiance(input, wavelength);
+        }
+        return vec4f(radiance, 1.0f);
+    }
+    return vec4f(scene_radiance(input, 0u), 1.0f);
+}
