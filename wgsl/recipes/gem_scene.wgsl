@@ -137,41 +137,30 @@ fn scene_end(ray: SceneRay) {
     }
 }
 
-// Lets a ray wait, in place of the weakest one.
-fn scene_wait(ray: SceneRay) {
+// Lets a ray wait, before all weaker ones. Places are constant: an array by a variable place would not
+// fit into registers.
+fn scene_wait(arriving: SceneRay) {
+    var ray = arriving;
     if (scene_strength(ray) <= scene_start.throughput_limit) {
         return;
     }
-    var place = 0u;
-    var least = scene_strength(scene_waiting[0]);
-    for (var other = 1u; other < SCENE_WAITING; other++) {
-        let strength = scene_strength(scene_waiting[other]);
-        if (strength < least) {
-            place = other;
-            least = strength;
+    for (var place = 0u; place < SCENE_WAITING; place++) {
+        let other = scene_waiting[place];
+        if (scene_strength(ray) > scene_strength(other)) {
+            scene_waiting[place] = ray;
+            ray = other;
         }
     }
-    if (least < scene_strength(ray)) {
-        scene_end(scene_waiting[place]);
-        scene_waiting[place] = ray;
-    } else {
-        scene_end(ray);
-    }
+    scene_end(ray);
 }
 
 // Takes the strongest ray that waits.
 fn scene_next() -> SceneRay {
-    var place = 0u;
-    var most = scene_strength(scene_waiting[0]);
-    for (var other = 1u; other < SCENE_WAITING; other++) {
-        let strength = scene_strength(scene_waiting[other]);
-        if (strength > most) {
-            place = other;
-            most = strength;
-        }
+    let ray = scene_waiting[0];
+    for (var place = 1u; place < SCENE_WAITING; place++) {
+        scene_waiting[place - 1u] = scene_waiting[place];
     }
-    let ray = scene_waiting[place];
-    scene_waiting[place].throughput = vec3f(0.0f);
+    scene_waiting[SCENE_WAITING - 1u].throughput = vec3f(0.0f);
     return ray;
 }
 
@@ -310,45 +299,38 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     if (body.kind == SCENE_OPAQUE) {
         let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
         scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
-        return;
-    }
-    var behind = ray.within;
-    if (body.kind != SCENE_THIN_WALL) {
-        if (enters != scene_holds(ray.within, number)) {
+    } else {
+        var behind = ray.within;
+        if (body.kind != SCENE_THIN_WALL && enters != scene_holds(ray.within, number)) {
             behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
         }
-        if ((behind.x >> 1u) == (ray.within.x >> 1u)) {
-            // The same matter on both sides: no surface.
-            ray.within = behind;
-            scene_wait(ray);
-            return;
+        var split = SceneSplit(ray.direction, ray.direction, 0.0f);
+        var color = vec3f(1.0f);
+        if (body.kind == SCENE_THIN_WALL) {
+            split.reflected = refraction_reflect(ray.direction, facing);
+            split.reflectance = fresnel_dielectric(-dot(ray.direction, facing), body.index);
+            color = body.base_color;
+        } else if ((behind.x >> 1u) != (ray.within.x >> 1u)) {
+            // Otherwise there is the same matter on both sides, and no surface.
+            var smooth_normal = facing;
+            if (EFFECT_SMOOTH) {
+                smooth_normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+                smooth_normal = select(-smooth_normal, smooth_normal, enters);
+            }
+            let relative_index = scene_index(behind, wavelength) / scene_index(ray.within, wavelength);
+            split = scene_split(ray.direction, facing, smooth_normal, relative_index);
+            color = scene_color(ray.within) * scene_color(behind);
+            behind = scene_colored(behind);
         }
+        var reflected = ray;
+        reflected.direction = split.reflected;
+        reflected.throughput *= split.reflectance;
+        scene_wait(reflected);
+        ray.direction = split.refracted;
+        ray.throughput *= (1.0f - split.reflectance) * color;
+        ray.within = behind;
+        scene_wait(ray);
     }
-    var smooth_normal = facing;
-    if (EFFECT_SMOOTH) {
-        smooth_normal = scene_normal(hit.triangle, hit.barycentrics, outward);
-        smooth_normal = select(-smooth_normal, smooth_normal, enters);
-    }
-    let index_before = scene_index(ray.within, wavelength);
-    var split = SceneSplit(vec3f(0.0f), ray.direction, 0.0f);
-    var color = vec3f(1.0f);
-    if (body.kind == SCENE_THIN_WALL) {
-        split.reflected = refraction_reflect(ray.direction, facing);
-        split.reflectance = fresnel_dielectric(-dot(ray.direction, facing), body.index);
-        color = body.base_color;
-    } else {
-        split = scene_split(ray.direction, facing, smooth_normal, scene_index(behind, wavelength) / index_before);
-        color = scene_color(ray.within) * scene_color(behind);
-        behind = scene_colored(behind);
-    }
-    var reflected = ray;
-    reflected.direction = split.reflected;
-    reflected.throughput *= split.reflectance;
-    scene_wait(reflected);
-    ray.direction = split.refracted;
-    ray.throughput *= (1.0f - split.reflectance) * color;
-    ray.within = behind;
-    scene_wait(ray);
 }
 
 // Whether a ray may meet another body.
