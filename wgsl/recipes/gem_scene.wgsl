@@ -130,10 +130,15 @@ fn scene_strength(ray: SceneRay) -> f32 {
     return max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
 }
 
-// Ends a ray: the rest of its light comes from the environment.
+// Ends a ray. The rest of its light comes from the environment: outside, from where it goes; within a
+// body, whose surface turns it nobody knows where, evenly from all around.
 fn scene_end(ray: SceneRay) {
     if (REST_FROM_ENVIRONMENT) {
-        scene_found += ray.throughput * surroundings_radiance(ray.direction);
+        if (ray.within.x == SCENE_NONE) {
+            scene_found += ray.throughput * surroundings_radiance(ray.direction);
+        } else {
+            scene_found += ray.throughput * environment_harmonics(ray.direction).zeroth * harmonics.coefficients[0].rgb;
+        }
     }
 }
 
