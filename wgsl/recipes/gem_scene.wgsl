@@ -330,6 +330,8 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         var reflected = ray;
         reflected.direction = split.reflected;
         reflected.throughput *= split.reflectance;
+        // Of two surfaces in one place, light that goes back at the second crosses the first again.
+        reflected.left.y = BVH_TRACE_NONE;
         scene_wait(reflected);
         ray.direction = split.refracted;
         ray.throughput *= (1.0f - split.reflectance) * color;
