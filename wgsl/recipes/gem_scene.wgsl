@@ -313,8 +313,10 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         var color = vec3f(1.0f);
         if (body.kind == SCENE_THIN_WALL) {
             split.reflected = refraction_reflect(ray.direction, facing);
-            split.reflectance = fresnel_dielectric(-dot(ray.direction, facing), body.index);
-            color = body.base_color;
+            // Light goes back and forth between the wall's two interfaces. Its back is not there.
+            let once = select(0.0f, fresnel_dielectric(-dot(ray.direction, facing), body.index), enters);
+            split.reflectance = 2.0f * once / (1.0f + once);
+            color = select(vec3f(1.0f), body.base_color, enters);
         } else if ((behind.x >> 1u) != (ray.within.x >> 1u)) {
             // Otherwise there is the same matter on both sides, and no surface.
             var smooth_normal = facing;

@@ -3,6 +3,7 @@
 use crate::casting::bounds;
 use crate::remembered::Remembered;
 use glam::{Vec2, Vec3};
+use lapidary_scene::normals::Normals;
 use lapidary_scene::{Bounds, Object, Scene, clip_from_world};
 
 /// Number of vertices of a body of which it is asked whether they lie in the other.
@@ -43,6 +44,19 @@ pub(crate) fn share_within(body: &Object, around: &Object) -> Share {
             _ => Share::Part,
         }
     })
+}
+
+/// Whether the normals between a triangle's corners reflect and refract in a clear body.
+#[must_use]
+pub fn is_smooth(object: &Object) -> bool {
+    static FOUND: Remembered<bool> = Remembered::new();
+    let normals = object.material.normals;
+    let with_inside = object.material.is_clear() && object.material.thickness > 0.0;
+    with_inside
+        && match normals {
+            Normals::Decided => FOUND.of(&object.mesh, |mesh| normals.are_smooth(mesh)),
+            Normals::File | Normals::Facets => normals.are_smooth(&object.mesh),
+        }
 }
 
 /// Whether two boxes have a point in common.

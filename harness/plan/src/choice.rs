@@ -58,6 +58,9 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if let Some(other) = among::shares_space(object, scene).filter(|_| inside && has(Effect::Nested)) {
         return Some(format!("it shares space with {}", other.name));
     }
+    if inside && has(Effect::Smooth) && among::is_smooth(object) {
+        return Some("its normals are those of a smooth surface".to_owned());
+    }
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }

@@ -141,6 +141,7 @@ impl Case<'_> {
             Effect::Nested => self.nested(),
             Effect::Behind => self.behind(),
             Effect::Around => self.around(),
+            Effect::Smooth => self.smooth(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::HalfSpace => self.half_space(),
@@ -242,6 +243,13 @@ impl Case<'_> {
             other.map(|other| format!("in the view it overlaps {}", other.name)),
             "in the view it overlaps no clear body",
         )
+    }
+
+    fn smooth(&self) -> Answer {
+        let clear = self.scene.objects.iter().filter(|_| self.is_among());
+        let found = std::iter::once(self.object).chain(clear).find(|object| among::is_smooth(object));
+        let called = found.map(|object| format!("the normals of {} are those of a smooth surface", object.name));
+        self.among(called, "its normals are those of facets")
     }
 
     fn around(&self) -> Answer {

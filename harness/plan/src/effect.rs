@@ -65,6 +65,8 @@ effects! {
     Behind = "behind", "EFFECT_BEHIND";
     /// Bodies that are not clear, met by what leaves a clear one, by their triangles.
     Around = "around", "EFFECT_AROUND";
+    /// Normals between a triangle's corners that reflect and refract in a clear body.
+    Smooth = "smooth", "EFFECT_SMOOTH";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

@@ -14,7 +14,7 @@ impl<T: Copy> Remembered<T> {
         Self(Mutex::new(BTreeMap::new()))
     }
 
-    /// Returns the measure of a mesh, which must follow from its positions and triangles alone.
+    /// Returns the measure of a mesh, which must follow from its positions, normals and triangles alone.
     pub(crate) fn of(&self, mesh: &Mesh, measure: impl FnOnce(&Mesh) -> T) -> T {
         self.by_key(key(&[mesh]), || measure(mesh))
     }
@@ -40,7 +40,8 @@ fn key(meshes: &[&Mesh]) -> u64 {
     let mut hasher = DefaultHasher::new();
     for mesh in meshes {
         mesh.indices.hash(&mut hasher);
-        mesh.positions.iter().for_each(|position| position.to_array().map(f32::to_bits).hash(&mut hasher));
+        let vectors = mesh.positions.iter().chain(&mesh.normals);
+        vectors.for_each(|vector| vector.to_array().map(f32::to_bits).hash(&mut hasher));
     }
     hasher.finish()
 }

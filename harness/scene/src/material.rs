@@ -1,5 +1,6 @@
 //! Materials: those of glTF, with a few extensions.
 
+use super::normals::Normals;
 use super::{Medium, Solver, Texture, TextureSlot};
 use glam::Vec3;
 use lapidary_dispersion::{channels, oracle as dispersion};
@@ -62,6 +63,8 @@ pub struct Material {
     /// Which of several bodies that share space is there: the one of the greatest number, and of equal ones the body of the
     /// smaller volume, such as one that lies wholly inside the other.
     pub priority: i32,
+    /// Which normals refract and reflect in a clear body.
+    pub normals: Normals,
     /// Whether both sides of the surface are meant to be seen, as glTF's `doubleSided`. A solid
     /// shows only one.
     pub double_sided: bool,
@@ -130,6 +133,7 @@ impl Material {
             roughness: 1.0,
             second_lobe: None,
             priority: 0,
+            normals: Normals::Decided,
             double_sided: false,
             sigma0: None,
             medium: None,

@@ -9,8 +9,10 @@ use std::collections::HashMap;
 use glam::{DMat3, DVec3, Vec3};
 
 mod hard_edges;
+mod smooth;
 
 pub use hard_edges::{has_hard_edges, soft_normals};
+pub use smooth::{Normals, is_smooth};
 
 /// How the normals of the faces around a vertex are weighted in its shared normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

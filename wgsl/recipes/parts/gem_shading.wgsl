@@ -551,7 +551,9 @@ fn gem_radiance(
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
     let reflected = gem_surroundings(input.position, refraction_reflect(direction, input.face_normal));
     if (EFFECT_THIN_WALL) {
-        let reflectance = vec3f(fresnel_dielectric(cosine, material.index));
+        // Light goes back and forth between the wall's two interfaces.
+        let once = fresnel_dielectric(cosine, material.index);
+        let reflectance = vec3f(2.0f * once / (1.0f + once));
         let behind = gem_surroundings(input.position, direction);
         return GemRadiance(reflectance * reflected, (1.0f - reflectance) * gem_base_color() * behind, reflectance);
     }

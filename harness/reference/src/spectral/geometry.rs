@@ -2,6 +2,7 @@
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
+use super::face::{Face, faces};
 use super::hit::{Hit, Place};
 use super::matte::Mattes;
 use super::within::Within;
@@ -27,6 +28,8 @@ pub(crate) struct Bodies {
     /// Whether another body may lie within each, or share space with it: their boxes meet.
     shares: Vec<bool>,
     mattes: Mattes,
+    /// For each smooth clear body its faces, numbered like its triangles; empty if no body is smooth.
+    smooth: Vec<Option<Vec<Face>>>,
     /// How far apart two surfaces still lie in one place: 2^12 roundings of the largest coordinate.
     touching: f64,
 }
@@ -44,13 +47,25 @@ enum Body {
 }
 
 impl Bodies {
-    /// Takes all bodies as clear, whatever their materials are.
+    /// Takes all bodies as clear, whatever their materials are, and as flat.
     pub(crate) fn new(objects: &[Object], geometry: Geometry) -> Self {
-        Self::with_mattes(objects, geometry, Mattes::default())
+        Self::with_faces(objects, geometry, Mattes::default(), Vec::new())
     }
 
-    /// Matte bodies are always met by their triangles, whose corners have the normals.
+    /// Matte and smooth bodies are always met by their triangles, whose corners have the normals.
     pub(super) fn with_mattes(objects: &[Object], geometry: Geometry, mattes: Mattes) -> Self {
+        let is_smooth =
+            |object: &Object| object.material.is_clear() && object.material.normals.are_smooth(&object.mesh);
+        let smooth = objects.iter().map(|object| is_smooth(object).then(|| faces(&object.mesh))).collect();
+        Self::with_faces(objects, geometry, mattes, smooth)
+    }
+
+    fn with_faces(
+        objects: &[Object],
+        geometry: Geometry,
+        mattes: Mattes,
+        smooth: Vec<Option<Vec<Face>>>,
+    ) -> Self {
         let extents: Vec<Extent> = objects
             .iter()
             .map(|object| {
@@ -60,7 +75,8 @@ impl Bodies {
             })
             .collect();
         let body = |(number, (object, extent)): (usize, (&Object, &Extent))| {
-            let by_planes = geometry == Geometry::Planes && !mattes.has(number);
+            let is_smooth = matches!(smooth.get(number), Some(Some(_)));
+            let by_planes = geometry == Geometry::Planes && !mattes.has(number) && !is_smooth;
             match by_planes.then(|| planes_of_convex(&object.mesh)).flatten() {
                 Some(planes) => Body::Convex(Planes::new(planes, extent)),
                 None => Body::Triangles(Triangles::new(&object.mesh)),
@@ -68,7 +84,7 @@ impl Bodies {
         };
         let bodies = objects.iter().zip(&extents).enumerate().map(body).collect();
         let touching = reach_back(&extents);
-        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), mattes, touching }
+        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), mattes, smooth, touching }
     }
 
     /// Finds the next surface that a ray within some bodies crosses, and which way; `left` is the face that it comes from.
@@ -105,6 +121,14 @@ impl Bodies {
     /// the body is clear.
     pub(super) fn sent(&self, hit: &Hit, point: DVec3) -> Option<DVec3> {
         self.mattes.sent(hit, point)
+    }
+
+    /// Returns the outward unit normal that reflects and refracts at `hit`, which lies at `point`: interpolated if the
+    /// body is smooth.
+    pub(super) fn shading(&self, hit: &Hit, point: DVec3) -> DVec3 {
+        let Place { body, face } = hit.place;
+        let face = self.smooth.get(body).and_then(|faces| faces.as_ref()?.get(face));
+        face.map_or(hit.normal, |face| face.normal(point, hit.normal))
     }
 
     /// Returns the corners and outward unit normal of each triangle of a body, in the order of its

@@ -9,7 +9,9 @@
 //! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed; a ray that leaves one may enter
 //! another, or the same one again. Bodies may lie within clear ones, touch or overlap: where they share space, the one of the
 //! highest [`Material::priority`](lapidary_scene::Material::priority) is there, or else the smaller one, up to twelve around
-//! a point. Surfaces of clear bodies are flat: shared normals are ignored. Light is multiplied by the base colour on entry and
+//! a point. On a smooth clear body ([`Material::normals`](lapidary_scene::Material::normals)) the normals between a triangle's
+//! corners reflect and refract; where they would send light to the wrong side of the triangle, its own does. A clear body
+//! without thickness is a thin wall, which reflects and lets through what a pane of two interfaces does. Light is multiplied by the base colour on entry and
 //! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes.
 //!
 //! An opaque body is matte: it sends the same radiance in all directions, base colour / π times the
@@ -22,6 +24,7 @@
 
 mod bvh;
 mod cells;
+mod face;
 pub(crate) mod geometry;
 pub(crate) mod hit;
 mod matte;
@@ -320,6 +323,7 @@ impl<'scene> Job<'scene> {
                 around_eye,
                 bodies,
                 order: Order::of(&scene.objects),
+                thin: scene.objects.iter().map(is_thin).collect(),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },
@@ -370,6 +374,11 @@ impl Pixel {
         let [red, green, blue] = (self.radiance * share).as_vec3().to_array();
         [red, green, blue, (f64::from(self.covered) * share) as f32]
     }
+}
+
+/// Whether a body is clear and has no inside.
+fn is_thin(object: &Object) -> bool {
+    object.material.is_clear() && object.material.thickness == 0.0
 }
 
 /// Returns the optical properties of a body at one wavelength.

@@ -31,6 +31,8 @@ pub(super) struct Optics {
 pub(super) struct Surroundings<'scene> {
     pub(super) bodies: Bodies,
     pub(super) order: Order,
+    /// For each body whether it is a thin wall: clear, without an inside.
+    pub(super) thin: Vec<bool>,
     /// The clear bodies around the eye.
     pub(super) around_eye: Within,
     pub(super) environment: &'scene Environment,
@@ -80,8 +82,12 @@ enum Ahead {
 struct Arrival {
     point: DVec3,
     direction: DVec3,
-    /// Unit normal, facing the ray.
+    /// Unit normal of the face, facing the ray.
     normal: DVec3,
+    /// Unit normal that reflects and refracts: interpolated on a smooth body, unless it faces away.
+    shading: DVec3,
+    /// Whether the surface is a thin wall.
+    thin: bool,
     place: Place,
     /// The bodies before the surface.
     before: Within,
@@ -142,8 +148,8 @@ impl Surroundings<'_> {
             return Some(Primary::Matte(radiance));
         }
         let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
-        let arrival = ray.arrive(hit, Way::In, DVec3::ONE)?;
-        let reflected = reflect(direction, arrival.normal);
+        let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
+        let reflected = arrival.reflected();
         let reflected_radiance = match self.ahead(&arrival.leave(reflected, arrival.before, DVec3::ONE))? {
             Ahead::Surface(..) => None,
             Ahead::Light(radiance, _) => Some(radiance),
@@ -196,8 +202,7 @@ impl Surroundings<'_> {
                 waiting.push(ray);
             }
             if reflectance > 0.0 {
-                let direction = reflect(arrival.direction, arrival.normal);
-                let ray = arrival.leave(direction, arrival.before, arrival.throughput * reflectance);
+                let ray = arrival.leave(arrival.reflected(), arrival.before, arrival.throughput * reflectance);
                 pending += ray.energy();
                 match waiting.peek() {
                     Some(other) if *other > ray => waiting.push(ray),
@@ -222,7 +227,7 @@ impl Surroundings<'_> {
                 outcome.radiance += through(distance) * radiance;
                 return None;
             }
-            Some(Ahead::Surface(hit, way)) => ray.arrive(hit, way, through(hit.distance)),
+            Some(Ahead::Surface(hit, way)) => self.arrive(ray, hit, way, through(hit.distance)),
             None => None,
         };
         if arrival.is_none() {
@@ -230,17 +235,21 @@ impl Surroundings<'_> {
         }
         arrival
     }
-}
 
-impl Ray {
-    /// Returns the ray's arrival at `hit`; `None` if it comes into more bodies than are followed.
-    fn arrive(&self, hit: Hit, way: Way, throughput: DVec3) -> Option<Arrival> {
-        let (normal, behind) = match way {
-            Way::In => (hit.normal, self.within.with(hit.place.body)?),
-            Way::Out => (-hit.normal, self.within.without(hit.place.body)),
+    /// Returns a ray's arrival at `hit`; `None` if it comes into more bodies than are followed.
+    fn arrive(&self, ray: &Ray, hit: Hit, way: Way, throughput: DVec3) -> Option<Arrival> {
+        let Ray { origin, direction, within: before, .. } = *ray;
+        let point = origin + hit.distance * direction;
+        let thin = self.thin[hit.place.body];
+        let (side, behind) = match way {
+            Way::In if thin => (1.0, before),
+            Way::In => (1.0, before.with(hit.place.body)?),
+            Way::Out => (-1.0, before.without(hit.place.body)),
         };
-        let (point, direction) = (self.origin + hit.distance * self.direction, self.direction);
-        Some(Arrival { point, direction, normal, place: hit.place, before: self.within, behind, throughput })
+        let normal = side * hit.normal;
+        let given = side * self.bodies.shading(&hit, point);
+        let shading = if given.dot(direction) < 0.0 { given } else { normal };
+        Some(Arrival { point, direction, normal, shading, thin, place: hit.place, before, behind, throughput })
     }
 }
 
@@ -249,9 +258,28 @@ impl Arrival {
         Ray { origin: self.point, direction, left: Some(self.place), within, throughput }
     }
 
+    /// Returns the direction of the reflection: by the face's normal where the interpolated one would send it through the
+    /// face.
+    fn reflected(&self) -> DVec3 {
+        let reflected = reflect(self.direction, self.shading);
+        if reflected.dot(self.normal) > 0.0 { reflected } else { reflect(self.direction, self.normal) }
+    }
+
+    /// Returns the reflectance of a thin wall, between whose two interfaces light goes back and forth, and the transmitted
+    /// ray.
+    fn split_thin(&self, Optics { index, base_color, .. }: Optics) -> (f64, Option<Ray>) {
+        let once = fresnel::dielectric(-self.normal.dot(self.direction), index);
+        let reflectance = 2.0 * once / (1.0 + once);
+        let throughput = self.throughput * base_color * (1.0 - reflectance);
+        (reflectance, Some(self.leave(self.direction, self.before, throughput)))
+    }
+
     /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection. A surface with the same
     /// matter on both sides is not there: all light crosses it straight.
     fn split(&self, order: &Order, optics: &[Optics]) -> (f64, Option<Ray>) {
+        if self.thin {
+            return self.split_thin(optics[self.place.body]);
+        }
         let (mut before, mut behind) = (self.before, self.behind);
         let (from, to) = (before.matter(order), behind.matter(order));
         if from == to {
@@ -272,13 +300,17 @@ impl Arrival {
         {
             color *= optics[body].base_color;
         }
-        let cosine = -self.normal.dot(self.direction);
+        let cosine = -self.shading.dot(self.direction);
         // Skips the oracle well beyond the critical angle; near it, the oracle decides.
         let squared_sine = (1.0 - cosine) * (1.0 + cosine);
         if squared_sine > 1.000_001 * relative_index * relative_index {
             return (1.0, None);
         }
-        let refracted = refraction::refract(self.direction, self.normal, relative_index);
+        let mut refracted = refraction::refract(self.direction, self.shading, relative_index);
+        if !refracted.total && refracted.direction.dot(self.normal) >= 0.0 {
+            // It would stay before its own face.
+            refracted = refraction::refract(self.direction, self.normal, relative_index);
+        }
         if refracted.total {
             return (1.0, None);
         }

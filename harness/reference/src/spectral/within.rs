@@ -45,7 +45,8 @@ const _: () = assert!(lapidary_scene::gltf::MAX_OBJECTS <= 1 << u16::BITS && MOS
 impl Within {
     /// The clear bodies around a point; those beyond the largest number are left out.
     pub(super) fn around(point: Vec3, objects: &[Object]) -> Self {
-        let is_around = |object: &Object| !object.material.is_opaque() && object.mesh.encloses(point);
+        let has_inside = |object: &Object| !object.material.is_opaque() && !super::is_thin(object);
+        let is_around = |object: &Object| has_inside(object) && object.mesh.encloses(point);
         let bodies = objects.iter().enumerate().filter(|(_, object)| is_around(object));
         bodies.fold(Self::default(), |within, (body, _)| within.with(body).unwrap_or(within))
     }

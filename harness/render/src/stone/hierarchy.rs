@@ -138,7 +138,7 @@ impl Bodies {
         for (number, object) in scene.objects.iter().enumerate() {
             let first = all.indices.len() / 3;
             let offset = all.positions.len() as u32;
-            let is_flat = object.material.is_clear();
+            let is_flat = object.material.is_clear() && !lapidary_plan::is_smooth(object);
             all.positions.extend(&object.mesh.positions);
             let normals = object.mesh.normals.iter().copied().filter(|_| !is_flat);
             all.normals.extend(normals.chain(std::iter::repeat(Vec3::ZERO)).take(object.mesh.positions.len()));

@@ -87,6 +87,9 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
     if material.priority != 0 {
         extras.insert("priority".to_owned(), json!(material.priority));
     }
+    if let Some(name) = material.normals.name() {
+        extras.insert("normals".to_owned(), json!(name));
+    }
     if let Some(solver) = material.solver {
         extras.insert("solver".to_owned(), json!(solver.to_string()));
     }

@@ -4,7 +4,8 @@
 //! refractive index and the dispersion; if the file states these as well, they must agree. `sigma0`
 //! is [`Material::sigma0`](crate::Material::sigma0). `scattering` and `absorption`, which require each other, and the
 //! optional `anisotropy` and `veins` are [`Material::medium`](crate::Material::medium). `secondLobe` is
-//! [`Material::second_lobe`](crate::Material::second_lobe). `priority` is [`Material::priority`](crate::Material::priority), and
+//! [`Material::second_lobe`](crate::Material::second_lobe). `priority` is [`Material::priority`](crate::Material::priority),
+//! `normals` is [`Material::normals`](crate::Material::normals), and
 //! `solver` is [`Material::solver`](crate::Material::solver).
 //! Lengths are in world units: as with `attenuationDistance`, the scale of a node does not change
 //! them.
@@ -43,6 +44,8 @@ pub(super) struct Lapidary<'a> {
     #[serde(borrow, default, deserialize_with = "present")]
     priority: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
+    normals: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
     pub(super) scattering: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
     pub(super) absorption: Option<&'a RawValue>,
@@ -53,8 +56,18 @@ pub(super) struct Lapidary<'a> {
 }
 
 /// Names of the members of [`Lapidary`].
-const MEMBERS: [&str; 9] =
-    ["sellmeier", "sigma0", "solver", "secondLobe", "priority", "scattering", "absorption", "anisotropy", "veins"];
+const MEMBERS: [&str; 10] = [
+    "sellmeier",
+    "sigma0",
+    "solver",
+    "secondLobe",
+    "priority",
+    "normals",
+    "scattering",
+    "absorption",
+    "anisotropy",
+    "veins",
+];
 
 /// Deserialises a member that is present, even if it is null, which some writers put in place of a
 /// NaN.

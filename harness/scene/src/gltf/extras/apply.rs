@@ -6,6 +6,7 @@ use serde_json::value::RawValue;
 use super::{Lapidary, is_object, lengths};
 use crate::gltf::error::excerpt;
 use crate::gltf::medium::medium;
+use crate::normals::Normals;
 use crate::{Dispersion, Lobe, Material, Mineral, Solver};
 
 /// Maximum distance of a file's index from that of its Sellmeier equation: tables give two
@@ -32,6 +33,7 @@ impl Lapidary<'_> {
         material.medium = medium(self)?;
         material.second_lobe = self.second_lobe.map(lobe).transpose()?;
         material.priority = self.priority.map_or(Ok(0), priority)?;
+        material.normals = self.normals.map_or(Ok(Normals::Decided), normals)?;
         material.solver = self.solver.map(solver).transpose()?;
         if material.solver.is_some() && !material.scatters() {
             return Err("its extras.lapidary has a solver, but nothing there scatters light; give scattering and absorption, or \
@@ -69,6 +71,13 @@ fn priority(json: &RawValue) -> Result<i32, String> {
     serde_json::from_str(json.get()).map_err(|_| {
         format!("its extras.lapidary.priority is {}, but must be a whole number of 32 bits", excerpt(json.get()))
     })
+}
+
+/// Normals named by `normals`.
+fn normals(json: &RawValue) -> Result<Normals, String> {
+    let normals = serde_json::from_str::<String>(json.get()).ok().and_then(|name| Normals::named(&name));
+    normals
+        .ok_or_else(|| format!("its extras.lapidary.normals is {}, but must be \"file\" or \"facets\"", excerpt(json.get())))
 }
 
 /// Mineral named by `sellmeier`.
