@@ -37,6 +37,9 @@ override REST_FROM_ENVIRONMENT: bool = true;
 
 // Number of rays that wait. Of more, the weakest end.
 const SCENE_WAITING = 6u;
+// Cosine of the angle of incidence below which a ray is not followed to the curved surface above a
+// triangle.
+const SCENE_GRAZING = 0.2f;
 // Stands for no body.
 const SCENE_NONE = 0xffffffffu;
 // Values of SceneBody.kind.
@@ -228,6 +231,46 @@ fn scene_normal(triangle: u32, barycentrics: vec2f, flat_normal: vec3f) -> vec3f
     return normal * inverseSqrt(squared);
 }
 
+// A place on a curved surface.
+struct SceneCurved {
+    position: vec3f,
+    // Outward unit normal.
+    normal: vec3f,
+}
+
+// Where a ray meets the curved surface that a triangle's normals describe. Its height above the triangle
+// is half the mean distance of the corners' tangent planes, exact for a sphere to the second order; the
+// normal is interpolated there.
+fn scene_curved(hit: BvhTraceHit, position: vec3f, direction: vec3f, outward: vec3f) -> SceneCurved {
+    let a = corners[3u * hit.triangle].xyz;
+    let b = corners[3u * hit.triangle + 1u].xyz;
+    let c = corners[3u * hit.triangle + 2u].xyz;
+    let normal_a = corner_normals[3u * hit.triangle].xyz;
+    let normal_b = corner_normals[3u * hit.triangle + 1u].xyz;
+    let normal_c = corner_normals[3u * hit.triangle + 2u].xyz;
+    let weights = vec3f(1.0f - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
+    let above = vec3f(dot(a - position, normal_a), dot(b - position, normal_b), dot(c - position, normal_c));
+    let upright = vec3f(dot(normal_a, outward), dot(normal_b, outward), dot(normal_c, outward));
+    let most = 0.25f * max(length(b - a), length(c - a));
+    let height = clamp(0.5f * dot(weights, above * upright), -most, most);
+    // A ray that grazes the triangle may meet the surface far away, if at all.
+    let along = dot(direction, outward);
+    let slope = select(min(along, -SCENE_GRAZING), max(along, SCENE_GRAZING), along >= 0.0f);
+    let met = position + height / slope * direction;
+    let foot = met - a;
+    let across = cross(b - a, c - a);
+    let inverse = 1.0f / dot(across, across);
+    let place = inverse * vec2f(dot(cross(foot, c - a), across), dot(cross(b - a, foot), across));
+    // The normals of the corners hold a little beyond the triangle too.
+    let weight = clamp(place, vec2f(-0.5f), vec2f(1.5f));
+    let normal = (1.0f - weight.x - weight.y) * normal_a + weight.x * normal_b + weight.y * normal_c;
+    let squared = dot(normal, normal);
+    if (squared < 1e-6f) {
+        return SceneCurved(position, outward);
+    }
+    return SceneCurved(met, normal * inverseSqrt(squared));
+}
+
 // Radiance that an opaque body sends: Lambert's law, without shadows.
 fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
     var irradiance = vec3f(0.0f);
@@ -321,7 +364,9 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
             // Otherwise there is the same matter on both sides, and no surface.
             var smooth_normal = facing;
             if (EFFECT_SMOOTH) {
-                smooth_normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+                let curved = scene_curved(hit, ray.position, ray.direction, outward);
+                ray.position = curved.position;
+                smooth_normal = curved.normal;
                 smooth_normal = select(-smooth_normal, smooth_normal, enters);
             }
             let relative_index = scene_index(behind, wavelength) / scene_index(ray.within, wavelength);

@@ -3,6 +3,9 @@
 use glam::DVec3;
 use lapidary_scene::Mesh;
 
+/// Cosine of the angle of incidence below which a ray is not followed to the curved surface above a face.
+const GRAZING: f64 = 0.2;
+
 /// A triangle.
 pub(super) struct Face {
     corners: [DVec3; 3],
@@ -25,12 +28,39 @@ impl Face {
     /// Returns the unit normal at a point of the face, interpolated between the corners; `flat` if
     /// the normals there cancel each other.
     pub(super) fn normal(&self, point: DVec3, flat: DVec3) -> DVec3 {
+        self.mean(self.weights(point)).normalize_or(flat)
+    }
+
+    /// Returns where a ray that meets the face at `point` meets the curved surface that the normals at the corners
+    /// describe, and the outward unit normal there. Its height above the face is half the mean distance of the corners'
+    /// tangent planes, exact for a sphere to the second order.
+    pub(super) fn curved(&self, point: DVec3, direction: DVec3, flat: DVec3) -> (DVec3, DVec3) {
+        let [a, b, c] = self.corners;
+        let above = |corner: usize| (self.corners[corner] - point).dot(self.normals[corner]);
+        let height = |corner: usize| 0.5 * above(corner) * self.normals[corner].dot(flat);
+        let heights = DVec3::new(height(0), height(1), height(2));
+        let most = 0.25 * (b - a).length().max((c - a).length());
+        let height = self.weights(point).dot(heights).clamp(-most, most);
+        let along = direction.dot(flat);
+        // A ray that grazes the face may meet the surface far away, if at all.
+        let slope = if along >= 0.0 { along.max(GRAZING) } else { along.min(-GRAZING) };
+        let met = point + height / slope * direction;
+        // The normals of the corners hold a little beyond the face too.
+        let [_, second, third] = self.weights(met).to_array().map(|weight| weight.clamp(-0.5, 1.5));
+        let normal = self.mean(DVec3::new(1.0 - second - third, second, third));
+        if normal.length_squared() < 1e-6 { (point, flat) } else { (met, normal.normalize()) }
+    }
+
+    /// Returns the weights of the corners at a point above or below the face, which add up to 1.
+    fn weights(&self, point: DVec3) -> DVec3 {
         let [a, b, c] = self.corners;
         let across = (b - a).cross(c - a);
-        // The area opposite to a corner is the corner's weight, here with a common factor.
-        let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(across);
-        let weights = [weight(b, c), weight(c, a), weight(a, b)];
-        let sum: DVec3 = self.normals.iter().zip(weights).map(|(normal, weight)| weight * *normal).sum();
-        sum.normalize_or(flat)
+        // The area opposite to a corner is the corner's weight.
+        let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(across) / across.length_squared();
+        DVec3::new(weight(b, c), weight(c, a), weight(a, b))
+    }
+
+    fn mean(&self, weights: DVec3) -> DVec3 {
+        self.normals.iter().zip(weights.to_array()).map(|(normal, weight)| weight * *normal).sum()
     }
 }

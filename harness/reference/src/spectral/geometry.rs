@@ -123,12 +123,12 @@ impl Bodies {
         self.mattes.sent(hit, point)
     }
 
-    /// Returns the outward unit normal that reflects and refracts at `hit`, which lies at `point`: interpolated if the
-    /// body is smooth.
-    pub(super) fn shading(&self, hit: &Hit, point: DVec3) -> DVec3 {
+    /// Returns where a ray that comes to `hit` at `point` meets the body's surface, and the outward unit normal that reflects
+    /// and refracts there: those of the curved surface if the body is smooth.
+    pub(super) fn curved(&self, hit: &Hit, point: DVec3, direction: DVec3) -> (DVec3, DVec3) {
         let Place { body, face } = hit.place;
         let face = self.smooth.get(body).and_then(|faces| faces.as_ref()?.get(face));
-        face.map_or(hit.normal, |face| face.normal(point, hit.normal))
+        face.map_or((point, hit.normal), |face| face.curved(point, direction, hit.normal))
     }
 
     /// Returns the corners and outward unit normal of each triangle of a body, in the order of its

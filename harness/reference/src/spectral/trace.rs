@@ -247,7 +247,8 @@ impl Surroundings<'_> {
             Way::Out => (-1.0, before.without(hit.place.body)),
         };
         let normal = side * hit.normal;
-        let given = side * self.bodies.shading(&hit, point);
+        let (point, given) = self.bodies.curved(&hit, point, direction);
+        let given = side * given;
         let shading = if given.dot(direction) < 0.0 { given } else { normal };
         Some(Arrival { point, direction, normal, shading, thin, place: hit.place, before, behind, throughput })
     }
