@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, bounds_trace, closest_point, dispersion, environment, fresnel
 // requires: proxy_geometry, refraction, screen_trace
-// parts: mesh, mesh_normals, surroundings, bodies, gem_shading, screen, gem_apart
+// parts: mesh, mesh_normals, surroundings, bodies, lights, glints, gem_shading, screen, gem_apart
 // compares: closest_point
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh is read from storage buffers, so

@@ -4,7 +4,7 @@
 //   Geometry Gem Rendering", section 5.
 // requires: absorption, bounds_trace, bvh_trace, dispersion, environment, fresnel, proxy_geometry
 // requires: refraction, screen_trace
-// parts: surroundings, bodies, trace_nearest, gem_shading, screen, gem_apart
+// parts: surroundings, bodies, lights, glints, trace_nearest, gem_shading, screen, gem_apart
 //
 // Draw 3 vertices per triangle, in the order of the leaves, without a vertex buffer. The nodes and
 // the corners are bound in place of the mesh.

@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
 // requires: absorption, bounds_trace, convex_trace, dispersion, environment, fresnel
 // requires: proxy_geometry, refraction, screen_trace
-// parts: mesh, surroundings, bodies, gem_shading, screen, gem_apart
+// parts: mesh, surroundings, bodies, lights, glints, gem_shading, screen, gem_apart
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes. Each draw takes one stone,
 // which must be convex.

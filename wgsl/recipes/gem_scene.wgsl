@@ -4,7 +4,7 @@
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
 // requires: absorption, bvh_trace, cdrf, environment, fresnel, proxy_geometry, refraction
-// parts: surroundings, lights, harmonics, trace_nearest
+// parts: surroundings, lights, glints, harmonics, trace_nearest
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
 // set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
@@ -415,6 +415,9 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
         }
         if (hit.triangle == BVH_TRACE_NONE) {
             scene_found += ray.throughput * surroundings_radiance(ray.direction);
+            if (EFFECT_LIGHT) {
+                scene_found += ray.throughput * glints_radiance(ray.position, ray.direction);
+            }
         } else {
             scene_surface(ray, hit, wavelength);
         }

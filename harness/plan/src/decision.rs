@@ -142,6 +142,7 @@ impl Case<'_> {
             Effect::Behind => self.behind(),
             Effect::Around => self.around(),
             Effect::Smooth => self.smooth(),
+            Effect::Light => self.light(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::HalfSpace => self.half_space(),
@@ -250,6 +251,17 @@ impl Case<'_> {
         let found = std::iter::once(self.object).chain(clear).find(|object| among::is_smooth(object));
         let called = found.map(|object| format!("the normals of {} are those of a smooth surface", object.name));
         self.among(called, "its normals are those of facets")
+    }
+
+    fn light(&self) -> Answer {
+        let is_named = self.request.rung_of(self.object) != Rung::ByMaterial && !self.is_among();
+        match self.scene.lights.len() {
+            _ if !self.is_gem() => off(self.not_clear()),
+            0 => off("no lights"),
+            _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
+            1 => on("1 light has a disc"),
+            count => on(format!("{count} lights have discs")),
+        }
     }
 
     fn around(&self) -> Answer {
@@ -742,8 +754,9 @@ impl Case<'_> {
 
     fn spot(&self) -> Answer {
         let spots = self.scene.lights.iter().filter(|light| matches!(light, Light::Spot { .. })).count();
-        if self.is_gem() && !(self.is_among() && self.scene.beside_stones().count() > 0) {
-            return off("clear bodies are lit by the environment");
+        let sees_bodies = self.is_among() && self.scene.beside_stones().count() > 0;
+        if self.is_gem() && !sees_bodies && !self.light().0 {
+            return off("no light is seen");
         }
         match spots {
             0 => off("no light is a spot"),

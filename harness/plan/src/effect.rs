@@ -67,6 +67,8 @@ effects! {
     Around = "around", "EFFECT_AROUND";
     /// Normals between a triangle's corners that reflect and refract in a clear body.
     Smooth = "smooth", "EFFECT_SMOOTH";
+    /// Discs of suns and lamps, which light that leaves a clear body comes from.
+    Light = "light", "EFFECT_LIGHT";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

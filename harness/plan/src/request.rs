@@ -34,6 +34,8 @@ pub struct Request<'a> {
     pub shadows: bool,
     /// Whether scattering bodies follow the law of a half space under a named rung too.
     pub half_space: bool,
+    /// Whether clear bodies under a named rung show lights.
+    pub lights: bool,
     /// Whether facets' edges inside clear stones are smoothed from one sample per pixel.
     pub footprint: bool,
     /// What light that leaves a clear stone meets; `None` lets the quality decide.
@@ -57,6 +59,7 @@ impl Request<'_> {
             scattering: None,
             shadows: false,
             half_space: false,
+            lights: false,
             footprint: false,
             outside: None,
             environment: &Environment::Studio,

@@ -101,6 +101,7 @@ fn follow(
             wavelengths: settings.reference.wavelengths,
             energy_bound: settings.reference.energy_bound,
             environment: &settings.environment,
+            lights: !settings.without.has(Effect::Light),
             lit_by_environment: !settings.without.has(Effect::Environment),
             ..spectral::Settings::of_size(settings.width, settings.height)
         };

@@ -280,7 +280,12 @@ impl Document {
             "buffers": [{"byteLength": self.binary.len()}],
         });
         if !scene.lights.is_empty() {
-            let lights: Vec<Value> = scene.lights.iter().map(light::light).collect();
+            let lights: Vec<Value> = scene
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(number, one)| light::light(one, scene.light_radii.get(number).copied().flatten()))
+                .collect();
             written["extensions"] = json!({light::EXTENSION: {"lights": lights}});
         }
         self.textures.write(&mut written);

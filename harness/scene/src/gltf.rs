@@ -115,8 +115,9 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
             Camera::framing(vertices(&objects), toward_eye, vertical_fov)
         }
     };
-    let lights = light_node::lights(&root, &shown.nodes)?;
-    Ok(Scene { name: shown.name, objects, lights, camera, lacking: survey::lacking(&root, &shown.nodes, &materials) })
+    let (lights, light_radii) = light_node::lights(&root, &shown.nodes)?.into_iter().unzip();
+    let lacking = survey::lacking(&root, &shown.nodes, &materials);
+    Ok(Scene { name: shown.name, objects, lights, light_radii, camera, lacking })
 }
 
 #[cfg(test)]

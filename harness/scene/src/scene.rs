@@ -13,13 +13,35 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Lights other than the environment.
     pub lights: Vec<Light>,
+    /// Radii of the lights, by their numbers, as far as they are given: [`Scene::light_radius`].
+    pub light_radii: Vec<Option<f32>>,
     /// Camera that looks at the bodies.
     pub camera: Camera,
     /// Features that the file asks for and this renderer does not draw, each listed once.
     pub lacking: Vec<String>,
 }
 
+/// Half the angle under which the sun is seen from the earth, in radians.
+const SUN: f32 = 0.00465;
+/// Radius of a lamp of which none is given, as a share of its distance from the middle of the scene.
+const LAMP: f32 = 0.02;
+
 impl Scene {
+    /// Returns the radius of a light's disc: of a lamp in units of length, of a sun the sine of the angle that it takes up.
+    /// If none is given, that of the sun, and for a lamp a fiftieth of its distance from the middle of the bodies.
+    #[must_use]
+    pub fn light_radius(&self, number: usize) -> f32 {
+        if let Some(given) = self.light_radii.get(number).copied().flatten() {
+            return given;
+        }
+        match self.lights.get(number) {
+            Some(Light::Point { position, .. } | Light::Spot { position, .. }) => {
+                (LAMP * position.distance(self.bounds().centre())).max(f32::MIN_POSITIVE)
+            }
+            Some(Light::Directional { .. }) | None => SUN,
+        }
+    }
+
     /// Returns the box around all vertices, of zero size at the origin if there are none.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

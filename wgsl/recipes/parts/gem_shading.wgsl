@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts surroundings, bodies and screen, and mesh if it reads one; struct
+// A geometry recipe adds: the parts surroundings, bodies, lights, glints and screen, and mesh if it reads one; struct
 // GemVertex, whose members include `position`, `face_normal` and, with instances, `instance`; the entry
 // point gem_vertex; struct GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
 // gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
@@ -228,8 +228,25 @@ fn gem_arriving(meeting: GemMeeting, position: vec3f, direction: vec3f) -> vec3f
             return meeting.bounded;
         }
     }
+    if (EFFECT_LIGHT) {
+        return gem_lit(gem_world_position(position), gem_world_direction(direction));  //+light
+    }
     return surroundings_radiance(gem_world_direction(direction));
 }
+
+//+light {
+// Whether what is looked up stands in for the rest of a ray's light, whose direction is a guess.
+var<private> gem_guesses: bool;
+
+// Radiance of the environment and of lights, in world space.
+fn gem_lit(position: vec3f, direction: vec3f) -> vec3f {
+    let around = surroundings_radiance(direction);
+    if (gem_guesses) {
+        return around;
+    }
+    return around + glints_radiance(position, direction);
+}
+//+light }
 
 // Radiance that arrives at a position from a direction, both in the stone's space.
 fn gem_surroundings(position: vec3f, direction: vec3f) -> vec3f {
@@ -343,6 +360,9 @@ fn gem_end(ray: GemRay, outside: vec3f) -> vec3f {
 // Radiance that a ray of one refractive index finds inside the stone. At each facet, a share leaves
 // and meets the environment; the rest is reflected and followed further.
 fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
+    if (EFFECT_LIGHT) {
+        gem_guesses = false;  //+light
+    }
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
@@ -357,6 +377,9 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
             }
             gem_reflect(&ray, hit);
         }
+    }
+    if (EFFECT_LIGHT) {
+        gem_guesses = true;  //+light
     }
     if (REST_FROM_ENVIRONMENT) {
         return gem_end(ray, gem_surroundings(ray.position, ray.direction));
@@ -390,6 +413,9 @@ fn gem_surroundings_blue(position: vec3f, blue: vec3f) -> vec3f {
 // the channel's own, and the derivative's pole at the critical angle never occurs.
 fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     let offsets = material.channel_indices - material.index;
+    if (EFFECT_LIGHT) {
+        gem_guesses = false;  //+light
+    }
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, material.index).direction);
     var gradient = dispersion_enter(direction, input.face_normal, material.index);
@@ -420,6 +446,9 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
             gradient = dispersion_reflect(gradient, hit.normal);
         }
     }
+    if (EFFECT_LIGHT) {
+        gem_guesses = true;  //+light
+    }
     if (REST_FROM_ENVIRONMENT) {
         return gem_end(ray, gem_surroundings_channels(
             ray.position,
@@ -439,6 +468,9 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
 fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
     let channels = material.channel_indices;
     let offset = channels.r - channels.g;
+    if (EFFECT_LIGHT) {
+        gem_guesses = false;  //+light
+    }
     var place = gem_enter(input);
     var place_blue = place;
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, channels.g).direction);
@@ -471,6 +503,9 @@ fn gem_trace_split(input: GemVertex, direction: vec3f) -> vec3f {
             gem_reflect(&blue, hits.second);
         }
     }
+    if (EFFECT_LIGHT) {
+        gem_guesses = true;  //+light
+    }
     if (REST_FROM_ENVIRONMENT) {
         let red = dispersion_direction(ray.direction, gradient, offset);
         let outside = gem_surroundings_red_green(ray.position, ray.direction, red, ray.direction);
@@ -496,6 +531,9 @@ fn gem_surroundings_paper(position: vec3f, red: vec3f, spread: vec3f, travelled_
 // dispersion.
 fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     let index = material.channel_indices.r;
+    if (EFFECT_LIGHT) {
+        gem_guesses = false;  //+light
+    }
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     var spread = dispersion_paper_enter(direction, ray.direction);
@@ -516,6 +554,9 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
             spread = dispersion_paper_reflect(ray.direction, spread, hit.normal, DISPERSION_PAPER_EPSILON);
             gem_reflect(&ray, hit);
         }
+    }
+    if (EFFECT_LIGHT) {
+        gem_guesses = true;  //+light
     }
     if (REST_FROM_ENVIRONMENT) {
         return gem_end(ray, gem_surroundings_paper(ray.position, ray.direction, spread, ray.travelled));

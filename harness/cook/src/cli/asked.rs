@@ -35,7 +35,7 @@ pub(super) struct Asked {
     /// Draw effects that a named rung leaves out. shadow: lights cast shadows on everything that is
     /// drawn by its surface alone. half_space: scattering bodies follow the law of a half space. cdrf, optical_path, diffusion: draw all scattering materials by
     /// this technique, whatever their thickness relative to the mean free path.
-    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW, HALF_SPACE])]
+    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW, HALF_SPACE, LIGHT])]
     with: Vec<String>,
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
@@ -50,6 +50,7 @@ const OPTICAL_PATH: &str = "optical_path";
 const DIFFUSION: &str = "diffusion";
 const SHADOW: &str = "shadow";
 const HALF_SPACE: &str = "half_space";
+const LIGHT: &str = "light";
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
@@ -164,6 +165,7 @@ impl Asked {
             (one, _) => one.map(|(_, scattering)| scattering),
         };
         let (shadows, half_space) = (self.is_with(SHADOW), self.is_with(HALF_SPACE));
+        let lights = self.is_with(LIGHT);
         let (width, height) = self.size;
         let (rung, rungs) = self.rungs(scene)?;
         let quality = self.quality.unwrap_or_default();
@@ -182,6 +184,7 @@ impl Asked {
             scattering,
             shadows,
             half_space,
+            lights,
             environment,
             ..Settings::of_size(width, height)
         };
@@ -208,7 +211,7 @@ impl Asked {
                      has none; leave it out"
                 )));
             }
-            let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
+            let others: Vec<&Effect> = self.without.iter().filter(|effect| ![Effect::Environment, Effect::Light].contains(effect)).collect();
             // A scene's materials decide what it calls for. Evaluated lazily, because deciding
             // measures bodies.
             let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };
@@ -225,11 +228,14 @@ impl Asked {
         if settings.half_space {
             refuse_without_meaning(scene, settings, Effect::HalfSpace, &format!("--with {HALF_SPACE}"))?;
         }
+        if settings.lights {
+            refuse_without_meaning(scene, settings, Effect::Light, &format!("--with {LIGHT}"))?;
+        }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
         let is_open = |object: &Object| {
             object.material.medium.is_some() && settings.request().rung_of(object) == Rung::ByMaterial
         };
-        let technique = self.with.iter().find(|name| ![SHADOW, HALF_SPACE].contains(&name.as_str()));
+        let technique = self.with.iter().find(|name| ![SHADOW, HALF_SPACE, LIGHT].contains(&name.as_str()));
         if let Some(name) = technique.filter(|_| !scene.objects.iter().any(is_open)) {
             let reason = if scatters { "a rung is asked for" } else { "nothing there has scattering and absorption" };
             return Err(Failure(format!(

@@ -209,7 +209,9 @@ fn bodies_that_share_space_with_clear_ones_are_named() {
         said(&scene, request)
     };
     let within = vec![ball("glass", 1.0, 0.0, glass()), ball("pearl", 0.3, 0.2, Material::standard())];
-    let notes = said_of(within.clone(), &usual());
+    assert_eq!(said_of(within.clone(), &usual()), [""; 0]);
+    let notes = said_of(within.clone(), &by("bvh-8"));
+    let notes: Vec<&String> = notes.iter().filter(|note| !note.contains("so drawn by `lambert`")).collect();
     assert!(matches!(&notes[..], [note] if note.contains("object `pearl`: inside the clear `glass`")), "{notes:?}");
     assert_eq!(said_of(within, &by("reference")), [""; 0]);
     // Two that overlap are named once, with the smaller.

@@ -38,7 +38,7 @@ use glam::{DMat3, DVec3};
 use lapidary_absorption::oracle as absorption;
 use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
-use lapidary_scene::{Environment, LARGEST_SIDE, Object, SAMPLES, Scene};
+use lapidary_scene::{Environment, Light, LARGEST_SIDE, Object, SAMPLES, Scene};
 use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -73,6 +73,8 @@ pub struct Settings<'environment> {
     pub environment: &'environment Environment,
     /// Whether the environment lights matte bodies too, and not only the stones.
     pub lit_by_environment: bool,
+    /// Whether the discs of lights are seen in and through clear bodies.
+    pub lights: bool,
     /// Representation of bodies for ray intersection.
     pub geometry: Geometry,
 }
@@ -91,6 +93,7 @@ impl Settings<'static> {
             energy_bound: ENERGY_BOUND,
             environment: &Environment::Studio,
             lit_by_environment: true,
+            lights: false,
             geometry: Geometry::Planes,
         }
     }
@@ -323,6 +326,7 @@ impl<'scene> Job<'scene> {
                 around_eye,
                 bodies,
                 order: Order::of(&scene.objects),
+                lights: if settings.lights { lights(scene) } else { Vec::new() },
                 thin: scene.objects.iter().map(is_thin).collect(),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
@@ -374,6 +378,11 @@ impl Pixel {
         let [red, green, blue] = (self.radiance * share).as_vec3().to_array();
         [red, green, blue, (f64::from(self.covered) * share) as f32]
     }
+}
+
+/// Returns the lights with the radii of their discs.
+fn lights(scene: &Scene) -> Vec<(Light, f64)> {
+    scene.lights.iter().enumerate().map(|(number, light)| (*light, scene.light_radius(number).into())).collect()
 }
 
 /// Whether a body is clear and has no inside.

@@ -6,9 +6,10 @@ use super::within::{Order, Within};
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;
-use lapidary_scene::Environment;
+use lapidary_scene::{Environment, Light};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::f64::consts::PI;
 
 /// Largest number of surface hits for one sample and wavelength, over all its rays. Total
 /// reflection takes no energy, so a ray may be trapped for a long time; its energy then counts as
@@ -31,6 +32,8 @@ pub(super) struct Optics {
 pub(super) struct Surroundings<'scene> {
     pub(super) bodies: Bodies,
     pub(super) order: Order,
+    /// Lights whose discs are seen, with their radii: of a sun the sine of the angle.
+    pub(super) lights: Vec<(Light, f64)>,
     /// For each body whether it is a thin wall: clear, without an inside.
     pub(super) thin: Vec<bool>,
     /// The clear bodies around the eye.
@@ -160,11 +163,26 @@ impl Surroundings<'_> {
     /// Finds what a ray meets; `None` if it is within a body whose surface has a gap there.
     fn ahead(&self, ray: &Ray) -> Option<Ahead> {
         let Some((hit, way)) = self.bodies.cross(ray.origin, ray.direction, ray.left, &ray.within) else {
-            let around = || Ahead::Light(self.environment.radiance(ray.direction), f64::INFINITY);
+            let around = || Ahead::Light(self.around(ray), f64::INFINITY);
             return ray.within.is_empty().then(around);
         };
         let sent = self.bodies.sent(&hit, ray.origin + hit.distance * ray.direction);
         Some(sent.map_or(Ahead::Surface(hit, way), |radiance| Ahead::Light(radiance, hit.distance)))
+    }
+
+    /// Returns the radiance of the environment and of the lights' discs along a ray.
+    fn around(&self, ray: &Ray) -> DVec3 {
+        let mut radiance = self.environment.radiance(ray.direction);
+        for (light, radius) in &self.lights {
+            let arrival = light.arrival(ray.origin);
+            let distance = if arrival.distance.is_finite() { arrival.distance } else { 1.0 };
+            let sine = (radius / distance.max(f64::MIN_POSITIVE)).min(1.0);
+            let ahead = arrival.direction.dot(ray.direction) > 0.0;
+            if ahead && arrival.direction.cross(ray.direction).length() <= sine {
+                radiance += arrival.irradiance / (PI * sine * sine);
+            }
+        }
+        radiance
     }
 
     /// Follows `primary` at one wavelength with the bodies' `optics` at that wavelength. The

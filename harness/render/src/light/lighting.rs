@@ -16,6 +16,9 @@ use lapidary_scene::light::Falloff;
 use lapidary_scene::{Light, Scene, harmonics};
 use std::cell::OnceCell;
 
+/// Binding of the part `glints` in group 0.
+const GLINTS: u32 = 16;
+
 /// Resources of the parts `surroundings`, `lights`, `harmonics`, `screen` and `bodies`.
 pub(crate) struct Lighting<'a> {
     pub(crate) scene: &'a Scene,
@@ -27,6 +30,7 @@ pub(crate) struct Lighting<'a> {
     screen: OnceCell<Picture>,
     bodies: OnceCell<Buffer>,
     hierarchy: OnceCell<Hierarchy>,
+    glints: OnceCell<Buffer>,
     /// What keeps light from others.
     pub(crate) shapes: Shapes,
     /// Size of the largest picture in samples.
@@ -37,8 +41,9 @@ impl<'a> Lighting<'a> {
     /// Takes the scene's lights and bodies and the settings' environment, for pictures of up to this
     /// size in samples.
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
-        let (environment, lights, around, harmonics, screen, bodies, hierarchy, shapes) = Default::default();
-        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, hierarchy, shapes, size }
+        let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
+        let (hierarchy, glints) = Default::default();
+        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, hierarchy, glints, shapes, size }
     }
 
     /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how
@@ -61,6 +66,18 @@ impl<'a> Lighting<'a> {
         *self.bodies.get_or_init(|| {
             let records = from_bodies::all(self.scene, self.around()).iter().map(Body::record).collect();
             builder.of_object("", |builder| builder.records("bodies", records, wgpu::BufferUsages::STORAGE))
+        })
+    }
+
+    /// Returns the sizes of the lights' discs.
+    fn glints(&self, builder: &mut Builder<'_>) -> Buffer {
+        *self.glints.get_or_init(|| {
+            let scene = self.scene;
+            let rows = (self.settings.height * self.settings.samples) as f32;
+            let footprint = 2.0 * (0.5 * scene.camera.vertical_fov).tan() / rows;
+            let radii = (0..scene.lights.len().max(1)).map(|number| scene.light_radius(number));
+            let words: Vec<f32> = std::iter::once(footprint).chain(radii).collect();
+            builder.of_object("", |builder| builder.storage("glints", bytemuck::cast_slice(&words)))
         })
     }
 
@@ -122,7 +139,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 15 of group 0; 4, 5
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 16 of group 0; 4, 5
     /// and 10 are shadow maps, 6 is the view of the screen.
     pub(crate) fn shared(
         &self,
@@ -145,6 +162,9 @@ impl<'a> Lighting<'a> {
         }
         if builder.binds(pipeline, 0, from_bodies::BINDING) {
             shared.push((from_bodies::BINDING, self.bodies(builder).into()));
+        }
+        if builder.binds(pipeline, 0, GLINTS) {
+            shared.push((GLINTS, self.glints(builder).into()));
         }
         if Hierarchy::is_read(builder, pipeline) {
             shared.extend(self.hierarchy(builder)?.shared(builder, pipeline));

@@ -48,6 +48,8 @@ pub struct Settings {
     pub shadows: bool,
     /// Whether scattering bodies follow the law of a half space under a named rung too.
     pub half_space: bool,
+    /// Whether clear bodies under a named rung show lights.
+    pub lights: bool,
     /// Options for clear stones.
     pub gem: GemOptions,
     /// Options for scattering bodies drawn by their curvature.
@@ -195,6 +197,7 @@ impl Settings {
             scattering: None,
             shadows: false,
             half_space: false,
+            lights: false,
             gem: GemOptions::default(),
             diffuse: DiffuseOptions::default(),
             optical_path: OpticalPathOptions::default(),
@@ -216,6 +219,7 @@ impl Settings {
             scattering: self.scattering,
             shadows: self.shadows,
             half_space: self.half_space,
+            lights: self.lights,
             footprint: self.gem.footprint,
             outside: self.gem.outside,
             environment: &self.environment,

@@ -11,5 +11,5 @@ pub(super) const VERTICAL_FOV: f32 = 0.47;
 /// Builds a scene without lights whose camera sees all `objects` from the direction `toward_eye`.
 pub(super) fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     let camera = Camera::framing(vertices(&objects), toward_eye, VERTICAL_FOV);
-    Scene { name: name.to_owned(), objects, lights: Vec::new(), camera, lacking: Vec::new() }
+    Scene { name: name.to_owned(), objects, lights: Vec::new(), light_radii: Vec::new(), camera, lacking: Vec::new() }
 }

@@ -8,8 +8,8 @@ use crate::Light;
 /// Name of the extension.
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";
 
-/// JSON of a light, without its position.
-pub(super) fn light(light: &Light) -> Value {
+/// JSON of a light, without its position, with the radius of its disc if it is given.
+pub(super) fn light(light: &Light, radius: Option<f32>) -> Value {
     let (kind, radiometric) = match *light {
         Light::Directional { irradiance, .. } => ("directional", irradiance),
         Light::Point { intensity, .. } => ("point", intensity),
@@ -23,6 +23,9 @@ pub(super) fn light(light: &Light) -> Value {
     let mut json = json!({"type": kind, "color": color.to_array(), "intensity": intensity});
     if let Light::Spot { inner_angle, outer_angle, .. } = *light {
         json["spot"] = json!({"innerConeAngle": f64::from(inner_angle), "outerConeAngle": f64::from(outer_angle)});
+    }
+    if let Some(radius) = radius {
+        json["extras"] = json!({"lapidary": {"radius": radius}});
     }
     json
 }

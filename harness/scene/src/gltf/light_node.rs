@@ -20,8 +20,8 @@ use crate::light::are_cone_angles;
 
 const NAME: &str = "KHR_lights_punctual";
 
-/// Lights of the visible nodes, in the order of the nodes.
-pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>, GltfError> {
+/// Lights of the visible nodes, in the order of the nodes, with their radii as far as they are given.
+pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<(Light, Option<f32>)>, GltfError> {
     let in_file = |problem: String| GltfError::part("the file".to_owned(), problem);
     let all = root.extensions.as_ref().map(|all| &all.others);
     let list = Extension::of(all, NAME).and_then(|extension| extension.list("lights")).map_err(in_file)?;
@@ -33,6 +33,7 @@ pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>,
         let json = item(list, "light", index, || node.designation())?;
         let name = json.get("name").and_then(Value::as_str);
         let kind = read(json).map_err(|problem| GltfError::part(designation("light", index, name), problem))?;
+        let radius = radius(json).map_err(|problem| GltfError::part(designation("light", index, name), problem))?;
         let light = place(kind, node.world).ok_or_else(|| {
             GltfError::part(
                 node.designation(),
@@ -42,7 +43,7 @@ pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>,
                 ),
             )
         })?;
-        lights.push(light);
+        lights.push((light, radius));
     }
     Ok(lights)
 }
@@ -100,6 +101,17 @@ fn read(json: &Value) -> Result<Kind, String> {
             Err(format!("its type is {found}, but must be \"directional\", \"point\" or \"spot\""))
         }
     }
+}
+
+/// `extras.lapidary.radius` of a light: of a lamp in units of length, of a sun the sine of the angle that it takes up.
+fn radius(json: &Value) -> Result<Option<f32>, String> {
+    let Some(given) = json.pointer("/extras/lapidary/radius") else { return Ok(None) };
+    let most = if json.get("type").and_then(Value::as_str) == Some("directional") { 1.0 } else { f32::MAX };
+    let radius = given.as_f64().map(|radius| radius as f32).filter(|radius| *radius > 0.0 && *radius <= most);
+    let limit = if most == 1.0 { " and at most 1, the sine of an angle" } else { "" };
+    radius.map(Some).ok_or_else(|| {
+        format!("its extras.lapidary.radius is {}, but must be above 0{limit}", excerpt(&given.to_string()))
+    })
 }
 
 /// Inner and outer cone angle of a spot light.

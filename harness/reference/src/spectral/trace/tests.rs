@@ -30,7 +30,15 @@ fn surroundings<'a>(
 ) -> Surroundings<'a> {
     let bodies = Bodies::new(objects, geometry);
     let around_eye = Within::around(eye.as_vec3(), objects);
-    Surroundings { bodies, order: Order::of(objects), around_eye, environment, energy_bound }
+    Surroundings {
+        bodies,
+        order: Order::of(objects),
+        lights: Vec::new(),
+        thin: vec![false; objects.len()],
+        around_eye,
+        environment,
+        energy_bound,
+    }
 }
 
 fn outcome(
@@ -142,6 +150,8 @@ fn the_shortcut_to_total_reflection_agrees_with_the_oracle() {
                 point: DVec3::ZERO,
                 direction: DVec3::new(angle.sin(), -angle.cos(), 0.0),
                 normal: DVec3::Y,
+                shading: DVec3::Y,
+                thin: false,
                 place: Place { body: 0, face: 0 },
                 before: Within::default().with(0).expect("room"),
                 behind: Within::default(),

@@ -28,6 +28,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
         name: "test".to_owned(),
         objects: bodies.into_iter().map(object).collect(),
         lights,
+        light_radii: Vec::new(),
         camera,
         lacking: Vec::new(),
     }

@@ -13,7 +13,7 @@ fn layer(bottom: f64, top: f64) -> Object {
     let around = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|normal| side(normal, 512.0));
     let planes = [around.as_slice(), &[side(DVec3::Z, top), side(-DVec3::Z, -bottom)]].concat();
     let mesh = Polyhedron::from_planes(&planes).unwrap().to_mesh(Averaging::Angle);
-    Object::new("layer", mesh, Material { transmission: 1.0, ..Material::standard() })
+    Object::new("layer", mesh, Material { transmission: 1.0, thickness: 1.0, ..Material::standard() })
 }
 
 fn with_priority(mut object: Object, priority: i32) -> Object {
@@ -121,6 +121,8 @@ fn a_ball_within_a_ball_is_magnified_by_its_index() {
         let surroundings = Surroundings {
             bodies: Bodies::with_mattes(&objects, Geometry::Triangles, mattes),
             order: Order::of(&objects),
+            lights: Vec::new(),
+            thin: vec![false; objects.len()],
             around_eye: Within::default(),
             environment: &environment,
             energy_bound: 1e-6,
