@@ -389,7 +389,13 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
 
 // Whether a ray may meet another body.
 fn scene_is_followed(ray: SceneRay) -> bool {
-    return EFFECT_BEHIND || EFFECT_AROUND || ray.within.x != SCENE_NONE;
+    if (EFFECT_BEHIND) {
+        return true;
+    }
+    if (EFFECT_AROUND) {
+        return true;
+    }
+    return ray.within.x != SCENE_NONE;
 }
 
 // Radiance of one wavelength.

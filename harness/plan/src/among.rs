@@ -2,7 +2,7 @@
 
 use crate::casting::bounds;
 use crate::remembered::Remembered;
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use lapidary_scene::normals::Normals;
 use lapidary_scene::{Bounds, Object, Scene, clip_from_world};
 
@@ -14,7 +14,7 @@ const MOST_PRODUCTS: usize = 1 << 22;
 /// one shares no space with it.
 const BELOW: f32 = 1e-4;
 /// Number of bodies above which none is compared with the others: all pairs of more would take longer than drawing them.
-const MOST_COMPARED: usize = 256;
+pub(crate) const MOST_COMPARED: usize = 256;
 
 /// How much of a body lies within another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,9 +87,12 @@ fn has_inside(object: &Object) -> bool {
 
 /// Returns the first clear body that overlaps another clear one in a picture of this size: their boxes do.
 pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
-    let own = seen(bounds(object), scene, size)?;
+    // The matrix asks for the bounds of the whole scene.
+    others(object, scene).next()?;
+    let matrix = clip_from_world(scene, size[0], size[1]);
+    let own = seen(bounds(object), matrix)?;
     let overlaps = |bounds: Bounds| {
-        seen(bounds, scene, size).is_some_and(|other| own.0.cmplt(other.1).all() && other.0.cmplt(own.1).all())
+        seen(bounds, matrix).is_some_and(|other| own.0.cmplt(other.1).all() && other.0.cmplt(own.1).all())
     };
     let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() && overlaps(*bounds));
     found.map(|(other, _)| other)
@@ -104,8 +107,7 @@ pub(crate) fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a 
 }
 
 /// Returns the smallest rectangle of the picture around a box, from -1 to 1; `None` if nothing of it is in the picture.
-fn seen(bounds: Bounds, scene: &Scene, [width, height]: [u32; 2]) -> Option<(Vec2, Vec2)> {
-    let matrix = clip_from_world(scene, width, height);
+fn seen(bounds: Bounds, matrix: Mat4) -> Option<(Vec2, Vec2)> {
     let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for corner in 0..8 {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };

@@ -213,15 +213,15 @@ impl Case<'_> {
         }
     }
 
-    /// Whether light goes from one body to another.
     fn is_among(&self) -> bool {
-        self.rung.geometry_of_inside() == Some(Geometry::Scene)
+        self.rung.is_among()
     }
 
     /// Returns an answer that needs a rung by which light goes from one body to another.
     fn among(&self, called: Option<String>, not: &str) -> Answer {
         match called {
             _ if !self.is_gem() => off(self.not_clear()),
+            None if self.scene.objects.len() > among::MOST_COMPARED => off("too many bodies to compare"),
             None => off(not),
             Some(called) if self.is_among() => on(called),
             Some(called) => off(format!("the rung {} follows light through one body, though {called}", self.rung)),

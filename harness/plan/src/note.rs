@@ -127,6 +127,27 @@ pub enum Note {
         /// The rung that draws the clear one.
         rung: Rung,
     },
+    /// Clear bodies drawn as polished, or as wholly clear.
+    PolishedAndClear {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+        /// What is left out, by its name in the file.
+        what: Vec<&'static str>,
+    },
+    /// Clear bodies under a rung that shows no lights.
+    LightsNotSeen {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+    },
+    /// So many bodies that none is compared with the others.
+    NotCompared {
+        /// Number of bodies.
+        count: usize,
+    },
     /// A clear body around the camera, under a rung that draws bodies from outside alone.
     EyeWithin {
         /// The objects concerned.
@@ -194,6 +215,9 @@ impl Note {
             | Self::ThinWall { .. }
             | Self::FactorsAlone { .. }
             | Self::AllEnters { .. }
+            | Self::PolishedAndClear { .. }
+            | Self::LightsNotSeen { .. }
+            | Self::NotCompared { .. }
             | Self::LampInside { .. }
             | Self::NotClear { .. } => Gravity::LeftOut,
             Self::Black { .. } | Self::ClipsToWhite { .. } => Gravity::Exposure,
@@ -286,19 +310,32 @@ impl fmt::Display for Note {
             ),
             Self::Within { objects, around, rung } => write!(
                 f,
-                "{objects}: inside the clear `{around}`, of which rung `{rung}` shows nothing but the surroundings; --rung reference shows what is inside"
+                "{objects}: inside the clear `{around}`, of which rung `{rung}` shows nothing but the surroundings; rung `scene-16` shows what is inside"
             ),
             Self::EyeWithin { objects, rung } => write!(
                 f,
                 "{objects}: the camera stands inside, and rung `{rung}` draws nothing of it; --rung reference looks out of it"
             ),
-            Self::ShareSpace { objects, with, there, rung: Rung::Reference } => write!(
+            Self::PolishedAndClear { objects, rung, what } => write!(
+                f,
+                "{objects}: rung `{rung}` draws a clear body polished and all of it clear, without its {}",
+                what.join(" and ")
+            ),
+            Self::LightsNotSeen { objects, rung } => {
+                write!(f, "{objects}: rung `{rung}` shows no lights on a clear body; add --with light")
+            }
+            Self::NotCompared { count } => write!(
+                f,
+                "{count} bodies: too many to look which of them share space or stand before one another, so each clear one is drawn as if \
+                 it were alone; rung `scene-16` follows light through all"
+            ),
+            Self::ShareSpace { objects, with, there, rung } if rung.is_among() || *rung == Rung::Reference => write!(
                 f,
                 "{objects}: shares space with the clear `{with}`; `{there}` is there, unless extras.lapidary.priority says otherwise"
             ),
             Self::ShareSpace { objects, with, rung, .. } => write!(
                 f,
-                "{objects}: shares space with the clear `{with}`, through which rung `{rung}` follows light as if it were alone; --rung reference \
+                "{objects}: shares space with the clear `{with}`, through which rung `{rung}` follows light as if it were alone; rung `scene-16` \
                  follows both"
             ),
             Self::NotClear { objects, asked, instead } => write!(
@@ -359,6 +396,12 @@ mod tests {
                 Note::Within { objects: objects(2), around: "glass".to_owned(), rung },
                 "2 objects, first `hare`: inside the clear `glass`, of which rung `convex-8` shows nothing",
             ),
+            line_of(
+                Note::PolishedAndClear { objects: objects(2), rung, what: vec!["roughnessFactor", "transmissionFactor"] },
+                "polished and all of it clear, without its roughnessFactor and transmissionFactor",
+            ),
+            line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
+            line_of(Note::NotCompared { count: 900 }, "900 bodies: too many to look which of them share space"),
             line_of(Note::EyeWithin { objects: objects(1), rung }, "object `hare`: the camera stands inside"),
             line_of(
                 Note::ShareSpace {

@@ -5,7 +5,7 @@ mod shared_space;
 
 use super::{Decisions, thickness};
 use crate::remembered::Remembered;
-use crate::{Geometry, Note, Objects, Request, Rung, enclosed};
+use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
@@ -37,7 +37,8 @@ pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec
         notes.push(Note::NothingInView);
     }
     for (object, decisions) in scene.objects.iter().zip(decisions) {
-        let case = Case { object, rung: decisions.rung, scene, request };
+        let shows_lights = decisions.has(Effect::Light) || request.without.has(Effect::Light);
+        let case = Case { object, rung: decisions.rung, shows_lights, scene, request };
         for note in case.notes(around) {
             add(&mut notes, note);
         }
@@ -50,6 +51,8 @@ pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec
 struct Case<'a> {
     object: &'a Object,
     rung: Rung,
+    /// Whether lights are seen in a clear body, or left out on request.
+    shows_lights: bool,
     scene: &'a Scene,
     request: &'a Request<'a>,
 }
@@ -79,6 +82,11 @@ impl Case<'_> {
         if is_followed && self.object.mesh.encloses(self.scene.camera.eye) {
             notes.push(Note::EyeWithin { objects: objects.clone(), rung });
         }
+        notes.extend(self.polished(&objects));
+        let lit = is_followed && !self.scene.lights.is_empty();
+        if lit && !self.shows_lights {
+            notes.push(Note::LightsNotSeen { objects: objects.clone(), rung });
+        }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
             notes.push(Note::HardEdges { objects: objects.clone(), rung });
@@ -87,6 +95,17 @@ impl Case<'_> {
         notes.extend(self.black(&objects));
         notes.extend(self.white(&objects, around));
         notes
+    }
+
+    /// Returns a note if a clear body is rough or not wholly clear, which no rung draws.
+    fn polished(&self, objects: &Objects) -> Option<Note> {
+        let material = &self.object.material;
+        let rough = (material.roughness > 0.0).then_some("roughnessFactor");
+        let partly = (material.transmission < 1.0).then_some("transmissionFactor");
+        let what: Vec<&'static str> = rough.into_iter().chain(partly).collect();
+        let drawn = matches!(self.rung, Rung::Inside { .. } | Rung::Surface | Rung::Reference);
+        (material.is_clear() && drawn && !what.is_empty())
+            .then(|| Note::PolishedAndClear { objects: objects.clone(), rung: self.rung, what })
     }
 
     /// Returns the images, and the colours of vertices, that the rung leaves out.
@@ -98,6 +117,7 @@ impl Case<'_> {
             (TextureSlot::BaseColor, draws),
             (TextureSlot::Normal, draws),
             (TextureSlot::Thickness, spreads),
+            (TextureSlot::Transmission, false),
             (TextureSlot::DiffuseTransmission, spreads || !material.scatters()),
         ];
         let lost = |(slot, drawn): &(TextureSlot, bool)| {
@@ -113,7 +133,9 @@ impl Case<'_> {
         if mesh.triangle_count() > MOST_DIAGNOSED {
             return None;
         }
+        let is_thin = material.is_clear() && material.thickness == 0.0;
         let takes_a_solid = match self.rung {
+            Rung::Inside { geometry: Geometry::Scene, .. } | Rung::Reference if is_thin => false,
             Rung::Inside { .. } | Rung::OpticalPath(_) | Rung::Diffusion(_) => true,
             Rung::Reference => material.is_clear(),
             _ => false,

@@ -155,6 +155,11 @@ impl Rung {
         matches!(self, Self::Inside { .. } | Self::Surface)
     }
 
+    /// Whether light goes from one body to another.
+    pub fn is_among(self) -> bool {
+        matches!(self, Self::Inside { geometry: Geometry::Scene, .. })
+    }
+
     /// Whether the rung draws a material's images of colour and normals, and a mesh's colours.
     pub fn draws_images(self) -> bool {
         matches!(self, Self::Diffuse(_))

@@ -25,7 +25,17 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
         {
             Some(objects)
         }
-        (Note::LampInside { objects, rung }, Note::LampInside { rung: other, .. }) if rung == other => Some(objects),
+        (Note::LampInside { objects, rung }, Note::LampInside { rung: other, .. })
+        | (Note::LightsNotSeen { objects, rung }, Note::LightsNotSeen { rung: other, .. })
+            if rung == other =>
+        {
+            Some(objects)
+        }
+        (Note::PolishedAndClear { objects, rung, what }, Note::PolishedAndClear { rung: other, what: others, .. })
+            if rung == other && what == others =>
+        {
+            Some(objects)
+        }
         (
             Note::ShareSpace { objects, with, there, rung },
             Note::ShareSpace { with: others, there: here, rung: other, .. },

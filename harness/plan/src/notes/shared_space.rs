@@ -16,6 +16,11 @@ struct Boxed<'a> {
 
 /// Says which bodies lie within clear ones whose rungs show nothing of them, and which share space with clear ones.
 pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
+    if scene.objects.len() > among::MOST_COMPARED {
+        let mut rungs = decisions.iter().map(|decisions| decisions.rung);
+        let is_alone = rungs.any(|rung| matches!(rung, Rung::Inside { .. }) && !rung.is_among());
+        return is_alone.then_some(Note::NotCompared { count: scene.objects.len() }).into_iter().collect();
+    }
     let all = scene.objects.iter().zip(decisions).filter(|(object, _)| object.mesh.triangle_count() > 0);
     let bodies: Vec<Boxed<'_>> = all
         .map(|(object, decisions)| {

@@ -109,8 +109,10 @@ fn a_frame_of_other_work_is_no_change() {
 /// copies show, but for the rounding of rays at edges.
 #[test]
 fn copies_show_what_bodies_apart_show() {
-    let without = Effects::of(&[Effect::Instances]);
+    let apart = Effects::of(&[Effect::Nested, Effect::Behind]);
+    let without = apart.and(Effects::of(&[Effect::Instances]));
     let scene = ring();
+    let settings = || Settings { without: apart, ..settings() };
     let copies = render(gpu(), &scene, &settings()).expect("rendered");
     let bodies = Scene { objects: scene.objects[0].apart(), ..scene.clone() };
     let separate = render(gpu(), &bodies, &settings()).expect("rendered");

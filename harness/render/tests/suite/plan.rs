@@ -447,7 +447,9 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
 fn a_materials_variant_runs_on_its_own_draw_alone() {
     let [mut diamond, ruby] = ["brilliant", "ruby"].map(named);
     diamond.objects.extend(ruby.objects);
-    let listing = drawn(&diamond, &settings());
+    // In the view the one overlaps the other, which they would be drawn together for.
+    let settings = Settings { without: Effects::of(&[Effect::Nested, Effect::Behind]), ..settings() };
+    let listing = drawn(&diamond, &settings);
     let effects = |object: &str| {
         let steps: Vec<_> = listing.steps.iter().filter(|step| step.object == object).collect();
         let [step] = steps[..] else { panic!("{object}: {steps:?}") };
