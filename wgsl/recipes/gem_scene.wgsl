@@ -16,7 +16,8 @@ override EFFECT_NESTED: bool = false;
 // Light that leaves a clear body comes from clear bodies too. Called for by two clear bodies that
 // overlap in the view.
 override EFFECT_BEHIND: bool = false;
-// Light that leaves a clear body comes from bodies that are not clear. Called for by any of them.
+// Light comes from bodies that are not clear, too; if off, leave them out of the hierarchy. Called for by
+// any of them.
 override EFFECT_AROUND: bool = false;
 // The interpolated normal refracts and reflects. Called for by a clear body with smooth normals.
 override EFFECT_SMOOTH: bool = false;
@@ -150,6 +151,7 @@ fn scene_end(ray: SceneRay) {
 fn scene_wait(arriving: SceneRay) {
     var ray = arriving;
     if (scene_strength(ray) <= scene_start.throughput_limit) {
+        scene_end(ray);
         return;
     }
     for (var place = 0u; place < SCENE_WAITING; place++) {
@@ -344,10 +346,15 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     let outward = proxy_geometry_face_normal(a.xyz, b, c);
     let enters = dot(outward, ray.direction) < 0.0f;
     let facing = select(-outward, outward, enters);
-    if (body.kind == SCENE_OPAQUE) {
-        let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
-        scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
-    } else {
+    var passes = true;
+    if (EFFECT_AROUND) {
+        if (body.kind == SCENE_OPAQUE) {
+            let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+            scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
+            passes = false;
+        }
+    }
+    if (passes) {
         var behind = ray.within;
         if (body.kind != SCENE_THIN_WALL && enters != scene_holds(ray.within, number)) {
             behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
@@ -422,7 +429,7 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
         if (hit.triangle == BVH_TRACE_NONE) {
             scene_found += ray.throughput * surroundings_radiance(ray.direction);
             if (EFFECT_LIGHT) {
-                scene_found += ray.throughput * glints_radiance(ray.position, ray.direction);
+                scene_found += ray.throughput * glints_radiance(ray.position, ray.direction, view.eye);
             }
         } else {
             scene_surface(ray, hit, wavelength);

@@ -13,7 +13,8 @@ use lapidary_plan::{Decisions, Effect, Effects, Outside, Rung};
 use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Copies, Environment, Light, Object, Place, Scene};
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Copies, Dispersion, Environment, Light, Material, Object, Place, Scene};
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -85,6 +86,31 @@ fn spotlit(name: &str) -> Result<Scene, CostError> {
     Ok(Scene { lights: scene.lights.iter().map(spot).collect(), ..scene })
 }
 
+/// Returns the scene with only its first object, under a sun.
+fn sunlit(name: &str) -> Result<Scene, CostError> {
+    let sun = Light::Directional { toward: Vec3::new(0.6, 0.8, 0.0), irradiance: Vec3::splat(3.0) };
+    Ok(Scene { lights: vec![sun], ..one(name)? })
+}
+
+/// Returns a stone in its setting within a smooth ball of tinted glass, under a sun.
+fn in_glass() -> Result<Scene, CostError> {
+    let mut scene = Scene::named("solitaire").map_err(CostError::from)?;
+    let stone = scene.objects.iter().find(|object| object.material.is_clear());
+    let material = stone.map(|stone| stone.material.clone()).unwrap_or_else(Material::standard);
+    let tint = Vec3::new(0.9, 0.95, 1.0);
+    let glass = Material {
+        ior: 1.5,
+        dispersion: Dispersion::None,
+        attenuation_color: tint,
+        attenuation_distance: 10.0,
+        ..material
+    };
+    let bounds = scene.bounds();
+    let ball = sphere(f64::from(bounds.radius()), 48).placed(glam::DQuat::IDENTITY, bounds.centre().as_dvec3());
+    scene.objects.push(Object::new("glass", ball, glass));
+    Ok(Scene { lights: sunlit("brilliant")?.lights, ..scene })
+}
+
 fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     let settings = |rung: &str| {
         let rung: Rung = rung.parse().unwrap_or(Rung::ByMaterial);
@@ -153,9 +179,35 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             ],
         },
         Case {
+            name: "solitaire in a glass ball, a sun",
+            scene: in_glass()?,
+            settings: settings("scene-16+3"),
+            effects: &[
+                Effect::Nested,
+                Effect::Behind,
+                Effect::Around,
+                Effect::Smooth,
+                Effect::Light,
+                Effect::Absorption,
+                Effect::Dispersion,
+                Effect::EnvironmentMap,
+            ],
+            stands_on: &[],
+        },
+        Case {
+            name: "brilliant, a sun",
+            scene: sunlit("brilliant")?,
+            settings: settings("by-material"),
+            effects: &[Effect::ConvexTrace, Effect::Light, Effect::EnvironmentMap],
+            stands_on: &[],
+        },
+        Case {
             name: "tray, bodies",
             scene: Scene::named("tray")?,
-            settings: settings("by-material"),
+            settings: Settings {
+                gem: GemOptions { outside: Some(Outside::Bodies), ..GemOptions::default() },
+                ..settings("by-material")
+            },
             effects: &[Effect::ConvexTrace, Effect::BoundsTrace, Effect::EnvironmentMap],
             stands_on: &[(Effect::BoundsTrace, Effect::ConvexTrace)],
         },

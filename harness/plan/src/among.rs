@@ -75,7 +75,8 @@ fn others<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = (&'a
 pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
     let own = bounds(object);
     let shares = |other: &Object| {
-        share_within(other, object) != Share::Nothing || has_inside(other) && share_within(object, other) != Share::Nothing
+        share_within(other, object) != Share::Nothing
+            || has_inside(other) && share_within(object, other) != Share::Nothing
     };
     others(object, scene).find(|(other, bounds)| meet(*bounds, own) && shares(other)).map(|(other, _)| other)
 }

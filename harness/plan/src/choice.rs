@@ -61,10 +61,14 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if inside && has(Effect::Smooth) && among::is_smooth(object) {
         return Some("its normals are those of a smooth surface".to_owned());
     }
+    // Asked for what light meets, a user has chosen another way.
+    if request.outside.is_some() {
+        return None;
+    }
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
-    let stands = request.outside.is_none() && request.quality != Quality::Fast && has(Effect::Around);
+    let stands = request.quality != Quality::Fast && has(Effect::Around);
     let around = among::stands_in(object, scene).filter(|_| stands && inside)?;
     Some(format!("it stands within the bounds of {}", around.name))
 }

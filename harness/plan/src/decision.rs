@@ -232,7 +232,8 @@ impl Case<'_> {
         let clear = self.scene.objects.iter().filter(|object| object.material.is_clear() && self.is_among());
         // Light goes through all clear bodies, so that it is called for by any of them.
         let shares = |object: &Object| {
-            among::shares_space(object, self.scene).map(|other| format!("{} shares space with {}", object.name, other.name))
+            among::shares_space(object, self.scene)
+                .map(|other| format!("{} shares space with {}", object.name, other.name))
         };
         let called = std::iter::once(self.object).chain(clear).find_map(shares);
         self.among(called, "it shares space with no body")

@@ -397,7 +397,11 @@ mod tests {
                 "2 objects, first `hare`: inside the clear `glass`, of which rung `convex-8` shows nothing",
             ),
             line_of(
-                Note::PolishedAndClear { objects: objects(2), rung, what: vec!["roughnessFactor", "transmissionFactor"] },
+                Note::PolishedAndClear {
+                    objects: objects(2),
+                    rung,
+                    what: vec!["roughnessFactor", "transmissionFactor"],
+                },
                 "polished and all of it clear, without its roughnessFactor and transmissionFactor",
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),

@@ -104,8 +104,11 @@ impl Case<'_> {
         let partly = (material.transmission < 1.0).then_some("transmissionFactor");
         let what: Vec<&'static str> = rough.into_iter().chain(partly).collect();
         let drawn = matches!(self.rung, Rung::Inside { .. } | Rung::Surface | Rung::Reference);
-        (material.is_clear() && drawn && !what.is_empty())
-            .then(|| Note::PolishedAndClear { objects: objects.clone(), rung: self.rung, what })
+        (material.is_clear() && drawn && !what.is_empty()).then(|| Note::PolishedAndClear {
+            objects: objects.clone(),
+            rung: self.rung,
+            what,
+        })
     }
 
     /// Returns the images, and the colours of vertices, that the rung leaves out.

@@ -258,7 +258,9 @@ impl FromStr for Rung {
             },
         };
         if geometry == Geometry::Scene && !matches!(spectrum, Spectrum::One | Spectrum::Separate(_)) {
-            return Err(format!("{name} follows one index of refraction, or wavelengths of its own, as in {name}-{hits}+3"));
+            return Err(format!(
+                "{name} follows one index of refraction, or wavelengths of its own, as in {name}-{hits}+3"
+            ));
         }
         Ok(Self::Inside { geometry, hits, spectrum })
     }

@@ -244,7 +244,7 @@ fn gem_lit(position: vec3f, direction: vec3f) -> vec3f {
     if (gem_guesses) {
         return around;
     }
-    return around + glints_radiance(position, direction);
+    return around + glints_radiance(position, direction, view.eye);
 }
 //+light }
 

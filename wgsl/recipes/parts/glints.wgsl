@@ -9,29 +9,27 @@
 override EFFECT_LIGHT: bool = false;
 
 //+light {
-struct Glints {
-    // Angle between the rays of neighbouring samples, in radians: a disc's edge is as wide.
-    footprint: f32,
-    // For each light its radius, or for a sun the sine of the angle that its radius takes up.
-    radii: array<f32>,
-}
+// First the angle between the rays of neighbouring samples, in radians: a disc's edge is as wide. Then for
+// each light its radius, or for a sun the sine of the angle that its radius takes up.
+@group(0) @binding(16) var<storage, read> glints: array<f32>;
 
-@group(0) @binding(16) var<storage, read> glints: Glints;
-
-// Radiance of the discs that are seen from a position in a direction.
-fn glints_radiance(position: vec3f, direction: vec3f) -> vec3f {
+// Radiance of the discs that are seen from a position in a direction. The rays of two samples part on the
+// whole way from the eye, which counts as straight.
+fn glints_radiance(position: vec3f, direction: vec3f, eye: vec3f) -> vec3f {
+    let way = length(position - eye);
     var radiance = vec3f(0.0f);
     for (var number = 0u; number < arrayLength(&lights); number++) {
         let light = lights[number];
         let arrival = light_arrival(light, position);
-        let distance = mix(1.0f, length(light.place - position), light.point);
-        let sine = min(glints.radii[number] / max(distance, 1e-30f), 1.0f);
+        let distance = mix(1.0f, max(length(light.place - position), 1e-30f), light.point);
+        let footprint = glints[0] * (1.0f + light.point * way / distance);
+        let sine = min(glints[number + 1u] / distance, 1.0f);
         // Wider than a footprint, so that none falls between samples; what it sends stays the same. With
         // an edge that falls linearly over a footprint, a disc of this radius has this size.
-        let wide = max(sine, glints.footprint);
-        let size = 3.14159265f * (wide * wide + glints.footprint * glints.footprint / 12.0f);
+        let wide = max(sine, footprint);
+        let size = 3.14159265f * (wide * wide + footprint * footprint / 12.0f);
         let aside = length(cross(arrival.direction, direction));
-        let seen = clamp((wide - aside) / glints.footprint + 0.5f, 0.0f, 1.0f);
+        let seen = clamp((wide - aside) / footprint + 0.5f, 0.0f, 1.0f);
         let ahead = select(0.0f, 1.0f, dot(arrival.direction, direction) > 0.0f);
         radiance += ahead * seen / size * arrival.irradiance;
     }

@@ -211,7 +211,8 @@ impl Asked {
                      has none; leave it out"
                 )));
             }
-            let others: Vec<&Effect> = self.without.iter().filter(|effect| ![Effect::Environment, Effect::Light].contains(effect)).collect();
+            let others: Vec<&Effect> =
+                self.without.iter().filter(|effect| ![Effect::Environment, Effect::Light].contains(effect)).collect();
             // A scene's materials decide what it calls for. Evaluated lazily, because deciding
             // measures bodies.
             let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };

@@ -61,9 +61,9 @@ fn plan_prints_one_json_document() {
         let drawn = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
         drawn.map(|row| text(row, "effect")).collect::<Vec<_>>()
     };
-    assert_eq!(on("diamond"), ["convex_trace", "dispersion", "bounds_trace"]);
-    assert_eq!(on("ruby"), ["convex_trace", "absorption", "bounds_trace"]);
-    assert_eq!(on("clear glass"), ["bvh_trace", "bounds_trace"]);
+    assert_eq!(on("diamond"), ["convex_trace", "dispersion", "bounds_trace", "light"]);
+    assert_eq!(on("ruby"), ["convex_trace", "absorption", "bounds_trace", "light"]);
+    assert_eq!(on("clear glass"), ["bvh_trace", "bounds_trace", "light"]);
     for row in rows("objects") {
         // Slate and bronze have one rung and no ladder.
         let measured = !["slate", "bronze"].contains(&text(&row, "material").as_str());

@@ -33,7 +33,9 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
     // Light from one body to another is followed, and priorities decide what is there.
     let clear = bodies.iter().enumerate().filter(|(_, body)| body.follows_light());
     for (place, around) in clear {
-        for (other, body) in bodies.iter().enumerate().filter(|(other, body)| *other != place && among::meet(body.bounds, around.bounds)) {
+        for (other, body) in
+            bodies.iter().enumerate().filter(|(other, body)| *other != place && among::meet(body.bounds, around.bounds))
+        {
             let objects = Objects { first: body.object.name.clone(), count: 1 };
             match body.share_within(around) {
                 Share::Nothing => {}

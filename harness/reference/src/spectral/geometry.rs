@@ -60,12 +60,7 @@ impl Bodies {
         Self::with_faces(objects, geometry, mattes, smooth)
     }
 
-    fn with_faces(
-        objects: &[Object],
-        geometry: Geometry,
-        mattes: Mattes,
-        smooth: Vec<Option<Vec<Face>>>,
-    ) -> Self {
+    fn with_faces(objects: &[Object], geometry: Geometry, mattes: Mattes, smooth: Vec<Option<Vec<Face>>>) -> Self {
         let extents: Vec<Extent> = objects
             .iter()
             .map(|object| {

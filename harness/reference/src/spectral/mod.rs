@@ -38,12 +38,12 @@ use glam::{DMat3, DVec3};
 use lapidary_absorption::oracle as absorption;
 use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
-use lapidary_scene::{Environment, Light, LARGEST_SIDE, Object, SAMPLES, Scene};
+use lapidary_scene::{Environment, LARGEST_SIDE, Light, Object, SAMPLES, Scene};
 use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surroundings};
-use within::{Order, Within};
+use within::{Order, Within, is_thin};
 
 /// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
@@ -383,11 +383,6 @@ impl Pixel {
 /// Returns the lights with the radii of their discs.
 fn lights(scene: &Scene) -> Vec<(Light, f64)> {
     scene.lights.iter().enumerate().map(|(number, light)| (*light, scene.light_radius(number).into())).collect()
-}
-
-/// Whether a body is clear and has no inside.
-fn is_thin(object: &Object) -> bool {
-    object.material.is_clear() && object.material.thickness == 0.0
 }
 
 /// Returns the optical properties of a body at one wavelength.

@@ -10,6 +10,11 @@ use lapidary_scene::Object;
 /// Largest number of bodies around a point; a ray that enters a further one is lost.
 pub(crate) const MOST: usize = 12;
 
+/// Whether a body is clear and has no inside.
+pub(super) fn is_thin(object: &Object) -> bool {
+    object.material.is_clear() && object.material.thickness == 0.0
+}
+
 /// For each body its place in the order of priorities, the highest last.
 #[derive(Debug)]
 pub(super) struct Order(Vec<u32>);
@@ -45,7 +50,7 @@ const _: () = assert!(lapidary_scene::gltf::MAX_OBJECTS <= 1 << u16::BITS && MOS
 impl Within {
     /// The clear bodies around a point; those beyond the largest number are left out.
     pub(super) fn around(point: Vec3, objects: &[Object]) -> Self {
-        let has_inside = |object: &Object| !object.material.is_opaque() && !super::is_thin(object);
+        let has_inside = |object: &Object| !object.material.is_opaque() && !is_thin(object);
         let is_around = |object: &Object| has_inside(object) && object.mesh.encloses(point);
         let bodies = objects.iter().enumerate().filter(|(_, object)| is_around(object));
         bodies.fold(Self::default(), |within, (body, _)| within.with(body).unwrap_or(within))

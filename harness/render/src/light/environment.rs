@@ -7,6 +7,23 @@ use glam::DVec3;
 use lapidary_plan::Effect;
 use lapidary_scene::{Environment, harmonics};
 
+/// The smallest difference in radiance times exposure that counts: half a step of an 8-bit display,
+/// taken as linear.
+pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
+
+/// An upper bound on the procedural studio's radiance, in any channel: no two of its lights
+/// overlap, the brightest has 20 in red, and the tent at most 0.26 there.
+pub const STUDIO_LARGEST: f32 = 20.4;
+
+/// Returns a radiance that no channel of the environment exceeds from any direction. For a map it
+/// is the largest texel's, since a mix of texels lies between them.
+pub fn largest_radiance(environment: &Environment) -> f32 {
+    match environment {
+        Environment::Studio => STUDIO_LARGEST,
+        Environment::Map(map) => map.pixels.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, f32::max),
+    }
+}
+
 /// Returns the environment map as a texture. For the studio, which has no map, it is one black
 /// texel, so that recipes that read a map still have one to bind.
 pub(crate) fn texture(builder: &mut Builder<'_>, environment: &Environment) -> Result<Texture, RenderError> {

@@ -3,13 +3,13 @@
 
 use super::environment;
 use super::from_bodies::{self, Body};
+use super::hierarchy::Hierarchy;
 use super::screen::{self, Picture};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::objects::mesh_buffers::Shapes;
 use crate::settings::Settings;
-use crate::stone::hierarchy::Hierarchy;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_plan::Effect;
 use lapidary_scene::light::Falloff;
@@ -43,7 +43,20 @@ impl<'a> Lighting<'a> {
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
         let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
         let (hierarchy, glints) = Default::default();
-        Self { scene, settings, environment, lights, around, harmonics, screen, bodies, hierarchy, glints, shapes, size }
+        Self {
+            scene,
+            settings,
+            environment,
+            lights,
+            around,
+            harmonics,
+            screen,
+            bodies,
+            hierarchy,
+            glints,
+            shapes,
+            size,
+        }
     }
 
     /// Returns the picture of the bodies that are not clear stones, once a pipeline reads it, and how

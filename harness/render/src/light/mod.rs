@@ -2,5 +2,6 @@
 
 pub(crate) mod environment;
 pub(crate) mod from_bodies;
+pub(crate) mod hierarchy;
 pub(crate) mod lighting;
 pub(crate) mod screen;

@@ -1,12 +1,12 @@
 //! A stone in a frame: its material, its mesh and its copies, bound to a pipeline.
 
 use super::geometry::{Geometries, check_steps};
-use super::hierarchy::Hierarchy;
 use super::material::GemMaterial;
 use super::wavelengths::{GemWavelength, wavelengths};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Builder, PipelineId};
+use crate::light::hierarchy::Hierarchy;
 use crate::objects::draws::Body;
 use crate::objects::mesh_buffers::vertices as mesh_vertices;
 use crate::objects::part::Drawn;

@@ -6,7 +6,6 @@ pub(crate) mod facet_map;
 pub(crate) mod footprint;
 pub(crate) mod gem;
 pub(crate) mod geometry;
-pub(crate) mod hierarchy;
 pub(crate) mod material;
 pub mod restraint;
 pub(crate) mod wavelengths;

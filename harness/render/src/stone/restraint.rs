@@ -9,18 +9,12 @@
 //! their matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit`
 //! divides by all of these.
 
+pub use crate::light::environment::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance};
+
 use super::wavelengths::wavelengths;
 use crate::settings::Settings;
 use lapidary_plan::{Rung, Spectrum};
-use lapidary_scene::{Environment, Material};
-
-/// The smallest difference in radiance times exposure that counts: half a step of an 8-bit display,
-/// taken as linear.
-pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
-
-/// An upper bound on the procedural studio's radiance, in any channel: no two of its lights
-/// overlap, the brightest has 20 in red, and the tent at most 0.26 there.
-pub const STUDIO_LARGEST: f32 = 20.4;
+use lapidary_scene::Material;
 
 /// The number of hits from which rays end by their throughput, unless the settings say otherwise:
 /// the smallest number at which this slowed down no scene and no geometry by more than the
@@ -32,15 +26,6 @@ pub const LEAST_HITS: u32 = 16;
 pub fn limits_throughput(rung: Rung, settings: &Settings) -> bool {
     let Rung::Inside { hits, .. } = rung else { return false };
     settings.gem.limit_throughput.unwrap_or(hits >= LEAST_HITS)
-}
-
-/// Returns a radiance that no channel of the environment exceeds from any direction. For a map it
-/// is the largest texel's, since a mix of texels lies between them.
-pub fn largest_radiance(environment: &Environment) -> f32 {
-    match environment {
-        Environment::Studio => STUDIO_LARGEST,
-        Environment::Map(map) => map.pixels.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, f32::max),
-    }
 }
 
 /// Returns the weight of the rays of all wavelengths in the pixel's sum: the largest sum of

@@ -1,5 +1,6 @@
 //! Tests of the renderer on a device.
 
+mod among;
 mod antialiasing;
 mod bvh;
 mod curvature;

@@ -25,7 +25,14 @@ pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
     let meshes = gltf::parse(VITRINE, None)?.objects.into_iter().map(|object| object.mesh);
     let bodies = bodies().into_iter().zip(meshes);
     let objects = bodies.map(|((name, material), mesh)| Object::new(name, mesh, material)).collect();
-    Ok(Scene { name: name.to_owned(), objects, lights: lights(), light_radii: Vec::new(), camera: camera(), lacking: Vec::new() })
+    Ok(Scene {
+        name: name.to_owned(),
+        objects,
+        lights: lights(),
+        light_radii: Vec::new(),
+        camera: camera(),
+        lacking: Vec::new(),
+    })
 }
 
 /// Returns names and materials, in the order of the file.

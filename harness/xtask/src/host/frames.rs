@@ -31,7 +31,7 @@ const fn other(command: &'static str, scene: &'static str, rung: &'static str) -
 }
 
 /// Frames that between them run every recipe that frames run, each of those with a grid at several sizes.
-pub(super) const EXAMPLES: [Example; 18] = [
+pub(super) const EXAMPLES: [Example; 20] = [
     of("brilliant", "brilliant", "by-material"),
     other("brilliant --rung convex-8+tracker", "brilliant", "convex-8+tracker"),
     other("brilliant --rung proxy-1", "brilliant", "proxy-1"),
@@ -58,6 +58,8 @@ pub(super) const EXAMPLES: [Example; 18] = [
         gem: |gem| GemOptions { outside: Some(Outside::Screen), ..gem },
         is_listed: true,
     },
+    of("solitaire", "solitaire", "by-material"),
+    other("tray --rung scene-16+3", "tray", "scene-16+3"),
     other("skin", "skin", "by-material"),
     of("skin_bunny --rung blur", "skin_bunny", "blur"),
     of("bunny --rung ping-pong-26-32", "bunny", "ping-pong-26-32"),
@@ -134,6 +136,7 @@ fn objects(scene: &Scene, plan: &Plan) -> HashMap<String, Quantities> {
         Quantities {
             vertices: shape.positions.len() as u64,
             triangles: shape.triangle_count() as u64,
+            of_all: scene.triangle_count() as u64,
             halo: (shape.halo.len() / 3) as u64,
             n: n.into(),
             ..Quantities::default()

@@ -76,8 +76,9 @@ fn priority(json: &RawValue) -> Result<i32, String> {
 /// Normals named by `normals`.
 fn normals(json: &RawValue) -> Result<Normals, String> {
     let normals = serde_json::from_str::<String>(json.get()).ok().and_then(|name| Normals::named(&name));
-    normals
-        .ok_or_else(|| format!("its extras.lapidary.normals is {}, but must be \"file\" or \"facets\"", excerpt(json.get())))
+    normals.ok_or_else(|| {
+        format!("its extras.lapidary.normals is {}, but must be \"file\" or \"facets\"", excerpt(json.get()))
+    })
 }
 
 /// Mineral named by `sellmeier`.

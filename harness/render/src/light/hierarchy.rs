@@ -1,12 +1,12 @@
 //! All bodies of a scene in one hierarchy of triangles, as the recipe `gem_scene` reads them.
 
-use super::restraint::{LEAST_DIFFERENCE, largest_radiance};
+use super::environment::{LEAST_DIFFERENCE, largest_radiance};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
 use glam::{UVec4, Vec3, Vec4};
-use lapidary_plan::Spectrum;
+use lapidary_plan::{Effect, Outside, Spectrum};
 use lapidary_scene::{Bvh, Material, Object, Scene, spectrum};
 
 /// Bindings in group 0, from the nodes on.
@@ -32,7 +32,7 @@ pub(crate) struct Hierarchy {
     /// Numbers of each object's triangles, in the order of the leaves.
     triangles: Vec<Vec<u32>>,
     /// Number of turns of the loop over nodes for one ray; few take more.
-    pub(super) steps: u64,
+    pub(crate) steps: u64,
 }
 
 impl Hierarchy {
@@ -41,7 +41,8 @@ impl Hierarchy {
     /// # Errors
     /// If they are beyond the limits that every device offers.
     pub(crate) fn new(builder: &mut Builder<'_>, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
-        let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene);
+        let alone = settings.without.has(Effect::Around) || settings.gem.outside == Some(Outside::Environment);
+        let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene, alone);
         // Where bodies share space, the one of the lower number is there; nothing is within an opaque one.
         bodies.sort_by(|one, other| {
             let key = |body: &Body| (!body.material.is_clear(), std::cmp::Reverse(body.material.priority));
@@ -89,7 +90,10 @@ impl Hierarchy {
     /// Returns the resources that `pipeline` reads.
     pub(crate) fn shared(&self, builder: &Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
         let bound = (FIRST..).zip(self.buffers);
-        bound.filter(|(binding, _)| builder.binds(pipeline, 0, *binding)).map(|(b, buffer)| (b, buffer.into())).collect()
+        bound
+            .filter(|(binding, _)| builder.binds(pipeline, 0, *binding))
+            .map(|(b, buffer)| (b, buffer.into()))
+            .collect()
     }
 
     /// Whether `pipeline` reads any of them.
@@ -98,12 +102,12 @@ impl Hierarchy {
     }
 
     /// Returns the numbers of an object's triangles.
-    pub(super) fn triangles(&self, object: usize) -> &[u32] {
+    pub(crate) fn triangles(&self, object: usize) -> &[u32] {
         &self.triangles[object]
     }
 
     /// Returns `SceneWavelength` of the recipe for each wavelength, and every body's index of refraction at each.
-    pub(super) fn wavelengths(&self, spectrum: Spectrum) -> (Vec<Record>, Vec<f32>) {
+    pub(crate) fn wavelengths(&self, spectrum: Spectrum) -> (Vec<Record>, Vec<f32>) {
         let weights = |weights: glam::DMat3| Record::new("SceneWavelength").with("weights", weights.as_mat3());
         match spectrum {
             Spectrum::Separate(3) => {
@@ -133,9 +137,11 @@ struct Bodies {
 }
 
 impl Bodies {
-    fn of(scene: &Scene) -> Self {
+    /// Takes the clear bodies `alone`, or all.
+    fn of(scene: &Scene, alone: bool) -> Self {
         let mut all = Self::default();
-        for (number, object) in scene.objects.iter().enumerate() {
+        let is_met = |object: &Object| !alone || object.material.is_clear();
+        for (number, object) in scene.objects.iter().enumerate().filter(|(_, object)| is_met(object)) {
             let first = all.indices.len() / 3;
             let offset = all.positions.len() as u32;
             let is_flat = object.material.is_clear() && !lapidary_plan::is_smooth(object);
