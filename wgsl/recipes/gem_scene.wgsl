@@ -86,12 +86,12 @@ struct SceneWavelength {
 // Normals at these corners; 0 where the triangle is flat.
 @group(0) @binding(13) var<storage, read> corner_normals: array<vec4f>;
 @group(0) @binding(14) var<storage, read> scene_bodies: array<SceneBody>;
-@group(0) @binding(15) var<storage, read> scene_start: SceneStart;
+@group(0) @binding(15) var<uniform> scene_start: SceneStart;
 // The numbers of the drawn body's triangles.
 @group(1) @binding(0) var<storage, read> triangles: array<u32>;
 @group(1) @binding(1) var<storage, read> wavelengths: array<SceneWavelength>;
 // The bodies' indices of refraction, wavelength by wavelength.
-@group(1) @binding(2) var<storage, read> indices: array<f32>;
+@group(1) @binding(2) var<storage, read> body_indices: array<f32>;
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
@@ -181,19 +181,13 @@ fn scene_holds(within: vec4u, body: u32) -> bool {
 
 // The bodies around a ray, and one more; the fifth is left out.
 fn scene_with(within: vec4u, body: u32) -> vec4u {
-    if (EFFECT_NESTED) {
-        // In an ordered list, each place keeps its body, or takes the new one or that of the place before.
-        return clamp(vec4u(2u * body), vec4u(0u, within.xyz), within);
-    }
-    return vec4u(2u * body, SCENE_NONE, SCENE_NONE, SCENE_NONE);
+    // In an ordered list, each place keeps its body, or takes the new one or that of the place before.
+    return clamp(vec4u(2u * body), vec4u(0u, within.xyz), within);
 }
 
 // The bodies around a ray without one of them.
 fn scene_without(within: vec4u, body: u32) -> vec4u {
-    if (EFFECT_NESTED) {
-        return select(within, vec4u(within.yzw, SCENE_NONE), within >= vec4u(2u * body));
-    }
-    return vec4u(SCENE_NONE);
+    return select(within, vec4u(within.yzw, SCENE_NONE), within >= vec4u(2u * body));
 }
 
 // The colour that light takes from the matter that it is in, if it has not taken it yet.
@@ -214,7 +208,7 @@ fn scene_index(within: vec4u, wavelength: u32) -> f32 {
         return 1.0f;
     }
     if (EFFECT_DISPERSION) {
-        return indices[wavelength * arrayLength(&scene_bodies) + (within.x >> 1u)];
+        return body_indices[wavelength * arrayLength(&scene_bodies) + (within.x >> 1u)];
     }
     return scene_bodies[within.x >> 1u].index;
 }
@@ -357,7 +351,10 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     if (passes) {
         var behind = ray.within;
         if (body.kind != SCENE_THIN_WALL && enters != scene_holds(ray.within, number)) {
-            behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
+            behind = vec4u(select(SCENE_NONE, 2u * number, enters), SCENE_NONE, SCENE_NONE, SCENE_NONE);
+            if (EFFECT_NESTED) {
+                behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
+            }
         }
         var split = SceneSplit(ray.direction, ray.direction, 0.0f);
         var color = vec3f(1.0f);
@@ -394,17 +391,6 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     }
 }
 
-// Whether a ray may meet another body.
-fn scene_is_followed(ray: SceneRay) -> bool {
-    if (EFFECT_BEHIND) {
-        return true;
-    }
-    if (EFFECT_AROUND) {
-        return true;
-    }
-    return ray.within.x != SCENE_NONE;
-}
-
 // Radiance of one wavelength.
 fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
     scene_found = vec3f(0.0f);
@@ -421,7 +407,15 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
                 break;
             }
             hit = bvh_trace_start(TRACE_FAR);
-            if (scene_is_followed(ray)) {
+            // Outside, a ray may meet other bodies.
+            var searches = ray.within.x != SCENE_NONE;
+            if (EFFECT_BEHIND) {
+                searches = true;
+            }
+            if (EFFECT_AROUND) {
+                searches = true;
+            }
+            if (searches) {
                 trace_also_left = ray.left.y;
                 hit = trace_nearest(ray.position, ray.direction, ray.left.x);
             }

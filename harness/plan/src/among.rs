@@ -3,7 +3,7 @@
 use crate::casting::bounds;
 use crate::remembered::Remembered;
 use glam::{Mat4, Vec2, Vec3};
-use lapidary_scene::normals::Normals;
+use lapidary_scene::normals::{self, Normals};
 use lapidary_scene::{Bounds, Object, Scene, clip_from_world};
 
 /// Number of vertices of a body of which it is asked whether they lie in the other.
@@ -57,6 +57,18 @@ pub fn is_smooth(object: &Object) -> bool {
             Normals::Decided => FOUND.of(&object.mesh, |mesh| normals.are_smooth(mesh)),
             Normals::File | Normals::Facets => normals.are_smooth(&object.mesh),
         }
+}
+
+/// Returns why a clear body is not smooth.
+pub(crate) fn why_flat(object: &Object) -> &'static str {
+    static BENT: Remembered<bool> = Remembered::new();
+    match object.material.normals {
+        Normals::Facets => "asked for: facets",
+        Normals::Decided if BENT.of(&object.mesh, normals::is_bent) => {
+            "few, wide facets with normals averaged over sharp edges: a cut stone"
+        }
+        Normals::Decided | Normals::File => "its normals are those of facets",
+    }
 }
 
 /// Whether two boxes have a point in common.

@@ -251,7 +251,7 @@ impl Case<'_> {
         let clear = self.scene.objects.iter().filter(|_| self.is_among());
         let found = std::iter::once(self.object).chain(clear).find(|object| among::is_smooth(object));
         let called = found.map(|object| format!("the normals of {} are those of a smooth surface", object.name));
-        self.among(called, "its normals are those of facets")
+        self.among(called, among::why_flat(self.object))
     }
 
     fn light(&self) -> Answer {
@@ -260,6 +260,13 @@ impl Case<'_> {
             _ if !self.is_gem() => off(self.not_clear()),
             0 => off("no lights"),
             _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
+            // Copies, wavelengths and bounds leave no room for two more buffers.
+            _ if matches!(self.rung.spectrum(), Spectrum::Separate(_))
+                && self.instances().0
+                && self.bounds_trace().0 =>
+            {
+                off("the stage reads as many buffers as devices offer")
+            }
             1 => on("1 light has a disc"),
             count => on(format!("{count} lights have discs")),
         }

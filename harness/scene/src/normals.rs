@@ -12,7 +12,7 @@ mod hard_edges;
 mod smooth;
 
 pub use hard_edges::{has_hard_edges, soft_normals};
-pub use smooth::{Normals, is_smooth};
+pub use smooth::{Normals, is_bent, is_smooth};
 
 /// How the normals of the faces around a vertex are weighted in its shared normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -7,6 +7,7 @@ use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Sc
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
+use lapidary_scene::normals::Normals;
 use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
@@ -32,9 +33,14 @@ pub(super) struct Asked {
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
+    /// Which normals refract in clear bodies: those of the file, between a triangle's corners, or those of
+    /// the facets. The file's by default, unless its facets are those of a cut stone.
+    #[arg(long, value_name = "WHICH", value_parser = parse_normals)]
+    normals: Option<Normals>,
     /// Draw effects that a named rung leaves out. shadow: lights cast shadows on everything that is
-    /// drawn by its surface alone. half_space: scattering bodies follow the law of a half space. cdrf, optical_path, diffusion: draw all scattering materials by
-    /// this technique, whatever their thickness relative to the mean free path.
+    /// drawn by its surface alone. half_space: scattering bodies follow the law of a half space. light:
+    /// clear bodies show the discs of lights. cdrf, optical_path, diffusion: draw all scattering materials by this
+    /// technique, whatever their thickness relative to the mean free path.
     #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW, HALF_SPACE, LIGHT])]
     with: Vec<String>,
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
@@ -85,7 +91,7 @@ impl Asked {
         files
     }
 
-    /// Opens the scene, with the materials that were asked for.
+    /// Opens the scene, with the materials and normals that were asked for.
     pub(super) fn open(&self) -> Result<Scene, Failure> {
         let mut scene = Scene::open(&self.scene)?;
         refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
@@ -100,6 +106,17 @@ impl Asked {
                     *object = preset.on(object);
                 }
             }
+        }
+        if let Some(normals) = self.normals {
+            let clear: Vec<&mut Object> =
+                scene.objects.iter_mut().filter(|object| object.material.is_clear()).collect();
+            if clear.is_empty() {
+                return Err(Failure(format!(
+                    "scene `{}`: --normals is for clear bodies, and none is there; leave it out",
+                    scene.name
+                )));
+            }
+            clear.into_iter().for_each(|object| object.material.normals = normals);
         }
         Ok(scene)
     }
@@ -246,6 +263,10 @@ impl Asked {
         }
         Ok(())
     }
+}
+
+fn parse_normals(text: &str) -> Result<Normals, String> {
+    Normals::named(text).ok_or_else(|| "expected file or facets".to_owned())
 }
 
 /// Refuses an option that is given twice for all objects or for one node.

@@ -207,7 +207,9 @@ fn a_thin_wall_shows_what_is_behind_it() {
         }
         let normal = normals[point.triangle as usize];
         let direction = (point.position - scene.camera.eye).normalize();
-        let reflectance = lapidary_fresnel::dielectric(-normal.dot(direction), material.ior);
+        let once = lapidary_fresnel::dielectric(-normal.dot(direction), material.ior);
+        // Light goes back and forth between two interfaces.
+        let reflectance = 2.0 * once / (1.0 + once);
         let behind = material.base_color * lapidary_environment::studio(direction);
         let reflected = lapidary_environment::studio(lapidary_refraction::reflect(direction, normal));
         let wanted = reflectance * reflected + (1.0 - reflectance) * behind;

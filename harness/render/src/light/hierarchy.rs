@@ -80,7 +80,7 @@ impl Hierarchy {
             ]
             .map(|(what, contents)| builder.storage(what, contents));
             let bodies = builder.records("scene's bodies", records, wgpu::BufferUsages::STORAGE);
-            [nodes, corners, normals, bodies, builder.record("start", start)]
+            [nodes, corners, normals, bodies, builder.uniform("start", start)]
         });
         let levels = u64::from((bvh.order.len().max(1)).ilog2()) + 1;
         let materials = bodies.into_iter().map(|body| body.material).collect();

@@ -62,6 +62,12 @@ pub fn is_smooth(mesh: &Mesh) -> bool {
     triangles.iter().any(Triangle::is_bent) && !is_cut(mesh, &triangles)
 }
 
+/// Whether any normal of a mesh differs from its triangle's.
+#[must_use]
+pub fn is_bent(mesh: &Mesh) -> bool {
+    triangles(mesh).iter().any(Triangle::is_bent)
+}
+
 /// A triangle with an area.
 struct Triangle {
     corners: [usize; 3],

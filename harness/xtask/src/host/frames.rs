@@ -136,7 +136,6 @@ fn objects(scene: &Scene, plan: &Plan) -> HashMap<String, Quantities> {
         Quantities {
             vertices: shape.positions.len() as u64,
             triangles: shape.triangle_count() as u64,
-            of_all: scene.triangle_count() as u64,
             halo: (shape.halo.len() / 3) as u64,
             n: n.into(),
             ..Quantities::default()

@@ -5,8 +5,6 @@
 pub(super) struct Quantities {
     pub(super) vertices: u64,
     pub(super) triangles: u64,
-    /// Triangles of all bodies.
-    pub(super) of_all: u64,
     /// Triangles beside the charts of an atlas.
     pub(super) halo: u64,
     /// Cells along each edge of the body's grid, or of a level of it.
@@ -43,9 +41,9 @@ pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
     (&["glints"], "gem", Rule::Each("(1 + lights)")),
     (&["nodes"], "gem_scene", Rule::Each("nodes")),
     (&["scene_bodies"], "gem_scene", Rule::Each("bodies")),
-    (&["corners", "corner_normals"], "gem_scene", Rule::Bytes("48 × triangles of all bodies", |q| 48 * q.of_all)),
+    (&["corners", "corner_normals"], "gem_scene", Rule::Each("corners of all bodies' triangles")),
     (&["triangles"], "gem_scene", Rule::Bytes("4 × triangles", |q| 4 * q.triangles)),
-    (&["indices"], "gem_scene", Rule::Each("wavelengths × bodies")),
+    (&["body_indices"], "gem_scene", Rule::Each("wavelengths × bodies")),
     (&["wavelengths"], "gem", Rule::Each("wavelengths, at least one")),
     (&["instances"], "gem", Rule::Each("copies, at least one")),
     (&["planes"], "gem", Rule::Each("facets")),
