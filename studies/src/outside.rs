@@ -27,26 +27,14 @@ const VIEWS: [(f32, f32); 3] = [(60.0, 12.0), (35.0, -25.0), (78.0, 40.0)];
 /// Samples along each side of a pixel of the reference.
 const REFERENCE_SAMPLES: u32 = 4;
 
-/// A way to draw the stones.
-#[derive(Clone, Copy)]
-enum Way {
-    /// By the default's rung for one stone, whose light meets this, with the steps over the picture.
-    Outside(Outside, u32),
-    /// By a rung that follows light through all bodies.
-    Among(&'static str),
-}
-
-const WAYS: [Way; 10] = [
-    Way::Outside(Outside::Environment, SCREEN_STEPS),
-    Way::Outside(Outside::Bodies, SCREEN_STEPS),
-    Way::Outside(Outside::Screen, SCREEN_STEPS),
-    Way::Outside(Outside::Screen, 16),
-    Way::Outside(Outside::Screen, 32),
-    Way::Outside(Outside::Screen, 64),
-    Way::Among("scene-8"),
-    Way::Among("scene-8+3"),
-    Way::Among("scene-16+3"),
-    Way::Among("scene-32+3"),
+/// The ways, each with the steps over the picture.
+const WAYS: [(Outside, u32); 6] = [
+    (Outside::Environment, SCREEN_STEPS),
+    (Outside::Bodies, SCREEN_STEPS),
+    (Outside::Screen, SCREEN_STEPS),
+    (Outside::Screen, 16),
+    (Outside::Screen, 32),
+    (Outside::Screen, 64),
 ];
 
 /// The reference without what stones send to one another.
@@ -61,12 +49,8 @@ pub fn options() -> Options {
 }
 
 /// Returns a way's name in the report.
-fn named(way: Way) -> String {
-    match way {
-        Way::Outside(Outside::Screen, steps) => format!("screen, {steps} steps"),
-        Way::Outside(outside, _) => outside.to_string(),
-        Way::Among(rung) => format!("all bodies, {rung}"),
-    }
+fn named((outside, steps): (Outside, u32)) -> String {
+    if outside == Outside::Screen { format!("{outside}, {steps} steps") } else { outside.to_string() }
 }
 
 /// Measures every way in every view, with one sample per pixel.
@@ -91,12 +75,9 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         for (measure, value) in MEASURES.into_iter().zip(errors(&alone, &reference)) {
             report.rows.push(Row::new(ALONE, &view, measure, value, ""));
         }
-        let settings = |way| match way {
-            Way::Outside(outside, screen_steps) => {
-                let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
-                Settings { gem, ..usual.clone() }
-            }
-            Way::Among(rung) => Settings { rung: rung.parse().unwrap_or(Rung::ByMaterial), ..usual.clone() },
+        let settings = |(outside, screen_steps)| {
+            let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
+            Settings { gem, ..usual.clone() }
         };
         let timed: Vec<Timed<'_>> = WAYS.iter().map(|way| Timed::new(&scene, settings(*way))).collect();
         let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;

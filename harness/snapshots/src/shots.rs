@@ -54,7 +54,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 pub(super) const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 55] = [
+pub const SHOTS: [Shot; 56] = [
     Shot {
         paragraph: "Each body by what its material calls for: a table and a stand that are opaque, a diamond with \
             dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
@@ -150,8 +150,13 @@ pub const SHOTS: [Shot; 55] = [
     },
     Shot {
         paragraph: "What light that leaves a stone meets: a diamond and an emerald on a tray. Most of their light comes from the tray and from \
-            what stands on it, here by the bounds of each body.",
+            what stands on it, and the diamond shows the emerald: here by the triangles of all.",
         ..shot("tray", "Stones on a tray", "tray", BY_MATERIAL)
+    },
+    Shot {
+        outside: Some(Outside::Bodies),
+        paragraph: "The same by the bounds of each body but the stones.",
+        ..shot("tray_bodies", "Stones on a tray, by bounds", "tray", BY_MATERIAL)
     },
     Shot {
         outside: Some(Outside::Environment),
