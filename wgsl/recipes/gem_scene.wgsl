@@ -67,6 +67,8 @@ struct SceneBody {
 struct SceneStart {
     // The bodies around the eye, as in SceneRay.
     within: vec4u,
+    // Mean radiance of the environment, linear RGB.
+    around: vec3f,
     // Share of the light below which a ray ends.
     throughput_limit: f32,
 }
@@ -141,7 +143,7 @@ fn scene_end(ray: SceneRay) {
         if (ray.within.x == SCENE_NONE) {
             scene_found += ray.throughput * surroundings_radiance(ray.direction);
         } else {
-            scene_found += ray.throughput * environment_harmonics(ray.direction).zeroth * harmonics.coefficients[0].rgb;
+            scene_found += ray.throughput * scene_start.around;
         }
     }
 }
@@ -342,7 +344,8 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     let facing = select(-outward, outward, enters);
     var passes = true;
     if (EFFECT_AROUND) {
-        if (body.kind == SCENE_OPAQUE) {
+        // Its back is not there.
+        if (body.kind == SCENE_OPAQUE && enters) {
             let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
             scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
             passes = false;
@@ -422,7 +425,7 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
         }
         if (hit.triangle == BVH_TRACE_NONE) {
             scene_found += ray.throughput * surroundings_radiance(ray.direction);
-            if (EFFECT_LIGHT) {
+            if (EFFECT_LIGHT && ray.within.x == SCENE_NONE) {
                 scene_found += ray.throughput * glints_radiance(ray.position, ray.direction, view.eye);
             }
         } else {

@@ -93,6 +93,16 @@ pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&
     others(object, scene).find(|(other, bounds)| meet(*bounds, own) && shares(other)).map(|(other, _)| other)
 }
 
+/// Returns the first clear body whose box meets that of another clear one; the body's own copies may meet too.
+pub(crate) fn may_share<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a str> {
+    if object.copies.as_ref().is_some_and(|copies| copies.places.len() > 1) {
+        return Some("its copies");
+    }
+    let own = bounds(object);
+    let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() && meet(*bounds, own));
+    found.map(|(other, _)| other.name.as_str())
+}
+
 /// Whether light that enters the body leaves it elsewhere.
 fn has_inside(object: &Object) -> bool {
     !object.material.is_clear() || object.material.thickness > 0.0

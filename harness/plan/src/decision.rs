@@ -11,7 +11,7 @@ use super::numbers::{short, triple};
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, TextureSlot};
+use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -232,8 +232,14 @@ impl Case<'_> {
         let clear = self.scene.objects.iter().filter(|object| object.material.is_clear() && self.is_among());
         // Light goes through all clear bodies, so that it is called for by any of them.
         let shares = |object: &Object| {
-            among::shares_space(object, self.scene)
-                .map(|other| format!("{} shares space with {}", object.name, other.name))
+            let shares = among::shares_space(object, self.scene)
+                .map(|other| format!("{} shares space with {}", object.name, other.name));
+            // Few vertices are looked at: where light goes from body to body, boxes that meet are enough.
+            let may = || {
+                among::may_share(object, self.scene)
+                    .map(|other| format!("{} may share space with {other}", object.name))
+            };
+            shares.or_else(|| may().filter(|_| self.is_among()))
         };
         let called = std::iter::once(self.object).chain(clear).find_map(shares);
         self.among(called, "it shares space with no body")
@@ -241,10 +247,13 @@ impl Case<'_> {
 
     fn behind(&self) -> Answer {
         let other = among::overlaps(self.object, self.scene, self.request.size);
-        self.among(
-            other.map(|other| format!("in the view it overlaps {}", other.name)),
-            "in the view it overlaps no clear body",
-        )
+        let called = other.map(|other| format!("in the view it overlaps {}", other.name));
+        let itself = || {
+            let convex = self.object.copies.is_none() && Shape::of(&self.object.mesh) == Shape::Convex;
+            (!convex).then(|| "light that leaves it may meet it again".to_owned())
+        };
+        let called = if called.is_none() && self.is_among() { itself() } else { called };
+        self.among(called, "in the view it overlaps no clear body")
     }
 
     fn smooth(&self) -> Answer {

@@ -4,6 +4,9 @@ use super::Rung;
 use super::numbers::short;
 use std::fmt;
 
+/// Number of clear bodies around a point that the rungs scene-HITS follow.
+pub(crate) const MOST_AROUND: usize = 4;
+
 /// A warning: something about a picture is wrong, or may be.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
@@ -143,6 +146,15 @@ pub enum Note {
         /// The rung that draws them.
         rung: Rung,
     },
+    /// A clear body within more clear ones than a ray knows.
+    TooDeep {
+        /// The objects concerned.
+        objects: Objects,
+        /// Number of clear bodies around a point of it, itself included.
+        within: usize,
+        /// The rung that draws them.
+        rung: Rung,
+    },
     /// So many bodies that none is compared with the others.
     NotCompared {
         /// Number of bodies.
@@ -218,6 +230,7 @@ impl Note {
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
             | Self::NotCompared { .. }
+            | Self::TooDeep { .. }
             | Self::LampInside { .. }
             | Self::NotClear { .. } => Gravity::LeftOut,
             Self::Black { .. } | Self::ClipsToWhite { .. } => Gravity::Exposure,
@@ -321,6 +334,11 @@ impl fmt::Display for Note {
                 "{objects}: rung `{rung}` draws a clear body polished and all of it clear, without its {}",
                 what.join(" and ")
             ),
+            Self::TooDeep { objects, within, rung } => write!(
+                f,
+                "{objects}: {within} clear bodies lie within one another there, of which rung `{rung}` follows {MOST_AROUND}; --rung reference \
+                 follows 12"
+            ),
             Self::LightsNotSeen { objects, rung } => {
                 write!(f, "{objects}: rung `{rung}` shows no lights on a clear body; add --with light")
             }
@@ -405,6 +423,7 @@ mod tests {
                 "polished and all of it clear, without its roughnessFactor and transmissionFactor",
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
+            line_of(Note::TooDeep { objects: objects(1), within: 6, rung }, "6 clear bodies lie within one another"),
             line_of(Note::NotCompared { count: 900 }, "900 bodies: too many to look which of them share space"),
             line_of(Note::EyeWithin { objects: objects(1), rung }, "object `hare`: the camera stands inside"),
             line_of(

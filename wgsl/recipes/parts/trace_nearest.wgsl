@@ -32,7 +32,7 @@ const TRACE_MOST_AHEAD = 64.0f;
 const TRACE_LEAF = 0x40000000u;
 
 // A second triangle that a ray does not meet, and the margin of the ray.
-var<private> trace_also_left: u32;
+var<private> trace_also_left: u32 = BVH_TRACE_NONE;
 var<private> trace_margin: f32;
 
 // The children that are still to be visited. Private, so that it is set to 0 once, not for each ray.
@@ -109,7 +109,7 @@ fn trace_push(height: u32, child: TraceChild) -> u32 {
     return height;
 }
 
-// The nearest triangle through which a ray leaves the solid.
+// The nearest triangle through which a ray leaves the solid, or, from both sides, enters or leaves one.
 fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     var hit = bvh_trace_start(TRACE_FAR);
     let whole = bvh_trace_bounds(nodes[0]);

@@ -31,6 +31,12 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
         {
             Some(objects)
         }
+        (Note::TooDeep { objects, within, rung }, Note::TooDeep { rung: other, within: others, .. })
+            if rung == other =>
+        {
+            *within = (*within).max(*others);
+            Some(objects)
+        }
         (Note::PolishedAndClear { objects, rung, what }, Note::PolishedAndClear { rung: other, what: others, .. })
             if rung == other && what == others =>
         {

@@ -2,6 +2,7 @@
 
 use super::merge::add;
 use crate::among::{self, Share};
+use crate::note::MOST_AROUND;
 use crate::{Decisions, Effect, Note, Objects, Rung};
 use lapidary_scene::{Bounds, Object, Scene};
 
@@ -9,8 +10,8 @@ use lapidary_scene::{Bounds, Object, Scene};
 struct Boxed<'a> {
     object: &'a Object,
     rung: Rung,
-    /// Whether what shares its space is shown.
-    nested: bool,
+    /// Whether clear bodies that share its space are shown, and whether others are.
+    nested: [bool; 2],
     bounds: Bounds,
 }
 
@@ -25,13 +26,24 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
     let bodies: Vec<Boxed<'_>> = all
         .map(|(object, decisions)| {
             let bounds = Bounds::of(object.mesh.positions.iter().copied());
-            let nested = decisions.rung == Rung::Reference || decisions.has(Effect::Nested);
+            let shows = |effect| decisions.rung == Rung::Reference || decisions.has(effect);
+            let nested = [shows(Effect::Nested), shows(Effect::Nested) && shows(Effect::Around)];
             Boxed { object, rung: decisions.rung, nested, bounds }
         })
         .collect();
     let mut notes = Vec::new();
-    // Light from one body to another is followed, and priorities decide what is there.
     let clear = bodies.iter().enumerate().filter(|(_, body)| body.follows_light());
+    for body in bodies.iter().filter(|body| body.follows_light() && body.rung.is_among()) {
+        let is_around = |around: &&Boxed<'_>| {
+            let other = !std::ptr::eq(around.object, body.object) && around.follows_light();
+            other && among::meet(body.bounds, around.bounds) && body.share_within(around) == Share::All
+        };
+        let within = 1 + bodies.iter().filter(is_around).count();
+        if within > MOST_AROUND {
+            let objects = Objects { first: body.object.name.clone(), count: 1 };
+            add(&mut notes, Note::TooDeep { objects, within, rung: body.rung });
+        }
+    }
     for (place, around) in clear {
         for (other, body) in
             bodies.iter().enumerate().filter(|(other, body)| *other != place && among::meet(body.bounds, around.bounds))
@@ -41,7 +53,7 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
                 Share::Nothing => {}
                 Share::All if around.share_within(body) != Share::All => {
                     let (around, rung, nested) = (around.object.name.clone(), around.rung, around.nested);
-                    if !nested {
+                    if !nested[usize::from(!body.object.material.is_clear())] {
                         add(&mut notes, Note::Within { objects, around, rung });
                     }
                 }

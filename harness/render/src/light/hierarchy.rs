@@ -7,7 +7,8 @@ use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
 use glam::{UVec4, Vec3, Vec4};
 use lapidary_plan::{Effect, Outside, Spectrum};
-use lapidary_scene::{Bvh, Material, Object, Scene, spectrum};
+use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, spectrum};
+use std::cell::OnceCell;
 
 /// Bindings in group 0, from the nodes on.
 const FIRST: u32 = 11;
@@ -26,7 +27,12 @@ struct Body {
 
 /// The hierarchy in a frame.
 pub(crate) struct Hierarchy {
-    buffers: [Buffer; 5],
+    nodes: Buffer,
+    corners: Buffer,
+    /// Normals at the corners, and their buffer once a pipeline reads it.
+    normals: (Vec<Vec4>, OnceCell<Buffer>),
+    bodies: Buffer,
+    start: Buffer,
     /// The bodies' materials, by number.
     materials: Vec<Material>,
     /// Numbers of each object's triangles, in the order of the leaves.
@@ -43,15 +49,21 @@ impl Hierarchy {
     pub(crate) fn new(builder: &mut Builder<'_>, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         let alone = settings.without.has(Effect::Around) || settings.gem.outside == Some(Outside::Environment);
         let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene, alone);
-        // Where bodies share space, the one of the lower number is there; nothing is within an opaque one.
+        // Where bodies share space, the one of the lower number is there, and of equal ones the last, as in the reference.
         bodies.sort_by(|one, other| {
             let key = |body: &Body| (!body.material.is_clear(), std::cmp::Reverse(body.material.priority));
-            key(one).cmp(&key(other)).then(one.volume.total_cmp(&other.volume))
+            let last = other.triangles.start.cmp(&one.triangles.start);
+            key(one).cmp(&key(other)).then(one.volume.total_cmp(&other.volume)).then(last)
         });
         let mut of_triangle = vec![0_u32; indices.len() / 3];
         for (number, body) in (0..).zip(&bodies) {
             of_triangle[body.triangles.clone()].fill(number);
         }
+        let within = around(scene.camera.eye, &bodies, |body| {
+            let corners = indices[3 * body.triangles.start..3 * body.triangles.end].iter();
+            let positions: Vec<Vec3> = corners.map(|index| positions[*index as usize]).collect();
+            Mesh { indices: (0..positions.len() as u32).collect(), positions, ..Mesh::default() }
+        });
         let bvh = Bvh::build(&positions, &indices);
         let mut corners = bvh.corners.clone();
         let mut triangles = vec![Vec::new(); scene.objects.len()];
@@ -68,32 +80,35 @@ impl Hierarchy {
             return Err(RenderError::TooLarge { what: "the scene's triangles".to_owned(), bytes, limit });
         }
         let start = Record::new("SceneStart")
-            .with("within", around(scene, &bodies))
+            .with("within", within)
+            .with("around", mean_radiance(&settings.environment))
             .with("throughput_limit", throughput_limit(settings));
         let records: Vec<Record> = bodies.iter().map(|body| record(&body.material)).collect();
         let words = bvh.words();
-        let buffers = builder.of_object("", |builder| {
-            let [nodes, corners, normals] = [
-                ("nodes", bytemuck::cast_slice(&words)),
-                ("corners", bytemuck::cast_slice(&corners)),
-                ("corner normals", bytemuck::cast_slice(&normals)),
-            ]
-            .map(|(what, contents)| builder.storage(what, contents));
+        let [nodes, corners, of_bodies, start] = builder.of_object("", |builder| {
+            let nodes = builder.storage("nodes", bytemuck::cast_slice(&words));
+            let corners = builder.storage("corners", bytemuck::cast_slice(&corners));
             let bodies = builder.records("scene's bodies", records, wgpu::BufferUsages::STORAGE);
-            [nodes, corners, normals, bodies, builder.uniform("start", start)]
+            [nodes, corners, bodies, builder.uniform("start", start)]
         });
+        let normals = (normals, OnceCell::new());
         let levels = u64::from((bvh.order.len().max(1)).ilog2()) + 1;
         let materials = bodies.into_iter().map(|body| body.material).collect();
-        Ok(Self { buffers, materials, triangles, steps: 16 * levels })
+        Ok(Self { nodes, corners, normals, bodies: of_bodies, start, materials, triangles, steps: 16 * levels })
     }
 
     /// Returns the resources that `pipeline` reads.
-    pub(crate) fn shared(&self, builder: &Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
-        let bound = (FIRST..).zip(self.buffers);
-        bound
-            .filter(|(binding, _)| builder.binds(pipeline, 0, *binding))
-            .map(|(b, buffer)| (b, buffer.into()))
-            .collect()
+    pub(crate) fn shared(&self, builder: &mut Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
+        let (contents, made) = &self.normals;
+        let mut buffers = vec![(FIRST, self.nodes), (FIRST + 1, self.corners)];
+        if builder.binds(pipeline, 0, FIRST + 2) {
+            let add =
+                || builder.of_object("", |builder| builder.storage("corner normals", bytemuck::cast_slice(contents)));
+            buffers.push((FIRST + 2, *made.get_or_init(add)));
+        }
+        buffers.extend([(FIRST + 3, self.bodies), (FIRST + 4, self.start)]);
+        buffers.retain(|(binding, _)| builder.binds(pipeline, 0, *binding));
+        buffers.into_iter().map(|(binding, buffer)| (binding, buffer.into())).collect()
     }
 
     /// Whether `pipeline` reads any of them.
@@ -158,7 +173,7 @@ impl Bodies {
     fn add(&mut self, number: usize, object: &Object, first: usize) {
         let copies = object.copies.as_ref().map_or(1, |copies| copies.places.len());
         let each = object.mesh.triangle_count() / copies.max(1);
-        let volume = object.mesh.volume_and_area().0 / copies.max(1) as f64;
+        let volume = object.mesh.volume_and_area().0;
         for (copy, material) in object.materials().enumerate() {
             let start = first + copy * each;
             self.bodies.push(Body { object: number, material, volume, triangles: start..start + each });
@@ -179,13 +194,19 @@ fn record(material: &Material) -> Record {
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.
-fn around(scene: &Scene, bodies: &[Body]) -> UVec4 {
+fn around(eye: Vec3, bodies: &[Body], mesh: impl Fn(&Body) -> Mesh) -> UVec4 {
     let has_inside = |body: &Body| body.material.is_clear() && body.material.thickness > 0.0;
-    let is_around = |body: &Body| has_inside(body) && scene.objects[body.object].mesh.encloses(scene.camera.eye);
+    let is_around = |body: &Body| has_inside(body) && mesh(body).encloses(eye);
     let mut within = [NONE; 4];
     let found = (0..).zip(bodies).filter(|(_, body)| is_around(body)).map(|(number, _): (u32, _)| 2 * number);
     within.iter_mut().zip(found).for_each(|(place, number)| *place = number);
     within.into()
+}
+
+/// Returns the mean radiance of an environment over all directions.
+fn mean_radiance(environment: &Environment) -> Vec3 {
+    // The constant harmonic.
+    (0.5 / std::f64::consts::PI.sqrt() * harmonics::project(environment)[0]).as_vec3()
 }
 
 /// Returns the share of light below which a ray ends: less than half a step of an 8-bit display.

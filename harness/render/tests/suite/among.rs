@@ -308,10 +308,8 @@ fn mixed_scenes_agree_with_the_reference() {
         let scene = mixed(seed);
         let settings = |rung| Settings { environment: Environment::Studio, samples: 1, ..of_rung(rung) };
         let truth = drawn(&scene, &settings("reference"));
-        let [few, many] = ["scene-16", "scene-64"].map(|rung| {
-            // Both without shadows, which the reference has none of.
-            difference(&drawn(&scene, &settings(rung)), &truth, 20).1
-        });
+        let [few, many] =
+            ["scene-16", "scene-64"].map(|rung| difference(&drawn(&scene, &settings(rung)), &truth, 20).1);
         assert!(many <= few + 1e-3 && many < 0.01, "seed {seed}: {few} and {many}");
     }
 }

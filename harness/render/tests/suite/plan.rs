@@ -278,7 +278,7 @@ fn cases() -> Vec<Case> {
         ),
         case(Effect::Nested, pearl.clone(), of_rung("scene-4"), none()),
         case(Effect::Behind, clear, of_rung("scene-4"), none()),
-        case(Effect::Around, pearl, of_rung("scene-4"), none()),
+        case(Effect::Around, pearl, of_rung("scene-4"), [vec!["corner normals"], vec![], vec![]]),
         case(Effect::Smooth, round, of_rung("scene-4"), [vec!["corner normals"], vec![], vec![]]),
         case(Effect::Light, lit, settings(), [vec!["lights", "glints"], vec![], vec![]]),
         case(
