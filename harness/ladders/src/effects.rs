@@ -107,7 +107,7 @@ fn in_glass() -> Result<Scene, CostError> {
     };
     let bounds = scene.bounds();
     let ball = sphere(f64::from(bounds.radius()), 48).placed(glam::DQuat::IDENTITY, bounds.centre().as_dvec3());
-    scene.objects.push(Object::new("glass", ball, glass));
+    scene.objects.insert(0, Object::new("glass", ball, glass));
     Ok(Scene { lights: sunlit("brilliant")?.lights, ..scene })
 }
 
