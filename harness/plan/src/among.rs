@@ -51,8 +51,8 @@ pub(crate) fn share_within(body: &Object, around: &Object) -> Share {
 pub fn is_smooth(object: &Object) -> bool {
     static FOUND: Remembered<bool> = Remembered::new();
     let normals = object.material.normals;
-    let with_inside = object.material.is_clear() && object.material.thickness > 0.0;
-    with_inside
+    object.material.is_clear()
+        && !object.material.is_thin_wall()
         && match normals {
             Normals::Decided => FOUND.of(&object.mesh, |mesh| normals.are_smooth(mesh)),
             Normals::File | Normals::Facets => normals.are_smooth(&object.mesh),
@@ -76,36 +76,43 @@ pub(crate) fn meet(one: Bounds, other: Bounds) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
+/// Returns the bodies of a scene that is not too large.
+fn compared(scene: &Scene) -> impl Iterator<Item = &Object> {
+    let compared = if scene.objects.len() > MOST_COMPARED { &[] } else { &scene.objects[..] };
+    compared.iter().filter(|object| object.mesh.triangle_count() > 0)
+}
+
 /// Returns the other bodies of a scene that is not too large, with their boxes.
 fn others<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = (&'a Object, Bounds)> {
-    let compared = if scene.objects.len() > MOST_COMPARED { &[] } else { &scene.objects[..] };
-    let others = compared.iter().filter(|other| !std::ptr::eq(*other, object) && other.mesh.triangle_count() > 0);
-    others.map(|other| (other, bounds(other)))
+    compared(scene).filter(|other| !std::ptr::eq(*other, object)).map(|other| (other, bounds(other)))
 }
 
 /// Returns the first body that shares space with a clear one, which has an inside.
 pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
     let own = bounds(object);
-    let shares = |other: &Object| {
-        share_within(other, object) != Share::Nothing
-            || has_inside(other) && share_within(object, other) != Share::Nothing
-    };
-    others(object, scene).find(|(other, bounds)| meet(*bounds, own) && shares(other)).map(|(other, _)| other)
+    let found = others(object, scene).find(|(other, bounds)| meet(*bounds, own) && share(object, other));
+    found.map(|(other, _)| other)
 }
 
-/// Returns the first clear body whose box meets that of another clear one; the body's own copies may meet too.
-pub(crate) fn may_share<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a str> {
-    if object.copies.as_ref().is_some_and(|copies| copies.places.len() > 1) {
-        return Some("its copies");
-    }
-    let own = bounds(object);
-    let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() && meet(*bounds, own));
-    found.map(|(other, _)| other.name.as_str())
+/// Whether a clear body and another one share space.
+fn share(object: &Object, other: &Object) -> bool {
+    share_within(other, object) != Share::Nothing
+        || !other.material.is_thin_wall() && share_within(object, other) != Share::Nothing
 }
 
-/// Whether light that enters the body leaves it elsewhere.
-fn has_inside(object: &Object) -> bool {
-    !object.material.is_clear() || object.material.thickness > 0.0
+/// Returns the first clear body of a scene that may share space with others, and what with: its own copies, a clear body
+/// whose box meets its own, or another body that does share space with it.
+pub(crate) fn any_share(scene: &Scene) -> Option<(&Object, &str)> {
+    let boxed: Vec<(&Object, Bounds)> = compared(scene).map(|object| (object, bounds(object))).collect();
+    boxed.iter().filter(|(object, _)| object.material.is_clear()).find_map(|(object, own)| {
+        if object.copies.as_ref().is_some_and(|copies| copies.places.len() > 1) {
+            return Some((*object, "its copies"));
+        }
+        let shares = |other: &Object| other.material.is_clear() || share(object, other);
+        let others = boxed.iter().filter(|(other, bounds)| !std::ptr::eq(*other, *object) && meet(*bounds, *own));
+        let found = others.map(|(other, _)| *other).find(|other| shares(other));
+        found.map(|other| (*object, other.name.as_str()))
+    })
 }
 
 /// Returns the first clear body that overlaps another clear one in a picture of this size: their boxes do.

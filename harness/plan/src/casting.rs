@@ -26,7 +26,7 @@ impl Casting {
     #[must_use]
     pub fn of(object: &Object) -> Self {
         let clear = object.material.is_clear();
-        if object.mesh.indices.is_empty() || clear && object.material.thickness == 0.0 {
+        if object.mesh.indices.is_empty() || object.material.is_thin_wall() {
             return Self::Nothing;
         }
         if clear { Self::Clear } else { Self::Opaque }

@@ -138,6 +138,10 @@ impl Case<'_> {
             Effect::Footprint => self.footprint(),
             Effect::ScreenTrace => self.screen_trace(),
             Effect::BoundsTrace => self.bounds_trace(),
+            // Others need not be measured for them.
+            Effect::Nested | Effect::Behind | Effect::Around | Effect::Smooth | Effect::Light if !self.is_gem() => {
+                off(self.not_clear())
+            }
             Effect::Nested => self.nested(),
             Effect::Behind => self.behind(),
             Effect::Around => self.around(),
@@ -220,7 +224,6 @@ impl Case<'_> {
     /// Returns an answer that needs a rung by which light goes from one body to another.
     fn among(&self, called: Option<String>, not: &str) -> Answer {
         match called {
-            _ if !self.is_gem() => off(self.not_clear()),
             None if self.scene.objects.len() > among::MOST_COMPARED => off("too many bodies to compare"),
             None => off(not),
             Some(called) if self.is_among() => on(called),
@@ -229,20 +232,15 @@ impl Case<'_> {
     }
 
     fn nested(&self) -> Answer {
-        let clear = self.scene.objects.iter().filter(|object| object.material.is_clear() && self.is_among());
-        // Light goes through all clear bodies, so that it is called for by any of them.
-        let shares = |object: &Object| {
-            let shares = among::shares_space(object, self.scene)
-                .map(|other| format!("{} shares space with {}", object.name, other.name));
-            // Few vertices are looked at: where light goes from body to body, boxes that meet are enough.
-            let may = || {
-                among::may_share(object, self.scene)
-                    .map(|other| format!("{} may share space with {other}", object.name))
-            };
-            shares.or_else(|| may().filter(|_| self.is_among()))
+        let shares = among::shares_space(self.object, self.scene);
+        let own = shares.map(|other| format!("{} shares space with {}", self.object.name, other.name));
+        // Light goes through all clear bodies, so that any of them calls for it. Few vertices are looked at: here boxes that
+        // meet are enough.
+        let any = || {
+            let (object, other) = among::any_share(self.scene).filter(|_| self.is_among())?;
+            Some(format!("{} may share space with {other}", object.name))
         };
-        let called = std::iter::once(self.object).chain(clear).find_map(shares);
-        self.among(called, "it shares space with no body")
+        self.among(own.or_else(any), "it shares space with no body")
     }
 
     fn behind(&self) -> Answer {
@@ -259,14 +257,17 @@ impl Case<'_> {
     fn smooth(&self) -> Answer {
         let clear = self.scene.objects.iter().filter(|_| self.is_among());
         let found = std::iter::once(self.object).chain(clear).find(|object| among::is_smooth(object));
-        let called = found.map(|object| format!("the normals of {} are those of a smooth surface", object.name));
-        self.among(called, among::why_flat(self.object))
+        match found {
+            Some(object) => {
+                self.among(Some(format!("the normals of {} are those of a smooth surface", object.name)), "")
+            }
+            None => self.among(None, among::why_flat(self.object)),
+        }
     }
 
     fn light(&self) -> Answer {
         let is_named = self.request.rung_of(self.object) != Rung::ByMaterial && !self.is_among();
         match self.scene.lights.len() {
-            _ if !self.is_gem() => off(self.not_clear()),
             0 => off("no lights"),
             _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
             // Copies, wavelengths and bounds leave no room for two more buffers.
@@ -283,7 +284,6 @@ impl Case<'_> {
 
     fn around(&self) -> Answer {
         match self.scene.beside_stones().count() {
-            _ if !self.is_gem() => off(self.not_clear()),
             _ if !self.is_among() => off(format!("the rung {} follows light through one body", self.rung)),
             0 => off("all bodies are clear"),
             _ if self.request.outside == Some(Outside::Environment) => off("asked for: environment"),

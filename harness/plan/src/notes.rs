@@ -136,9 +136,8 @@ impl Case<'_> {
         if mesh.triangle_count() > MOST_DIAGNOSED {
             return None;
         }
-        let is_thin = material.is_clear() && material.thickness == 0.0;
         let takes_a_solid = match self.rung {
-            Rung::Inside { geometry: Geometry::Scene, .. } | Rung::Reference if is_thin => false,
+            Rung::Inside { geometry: Geometry::Scene, .. } | Rung::Reference if material.is_thin_wall() => false,
             Rung::Inside { .. } | Rung::OpticalPath(_) | Rung::Diffusion(_) => true,
             Rung::Reference => material.is_clear(),
             _ => false,

@@ -61,7 +61,7 @@ pub use medium::{Density, DensityGrid, Medium};
 pub use mesh::Mesh;
 pub use mesh_diagnosis::MeshDiagnosis;
 pub use normals::Averaging;
-pub use object::Object;
+pub use object::{Object, precedence};
 pub use scene::Scene;
 pub use solver::Solver;
 pub use texture::{Encoding, Texels, Texture, TextureSlot, TextureTransform, Wrap};

@@ -254,6 +254,12 @@ impl Material {
         self.transmission > 0.0 && !self.scatters()
     }
 
+    /// Whether the body is clear and has no inside.
+    #[must_use]
+    pub fn is_thin_wall(&self) -> bool {
+        self.is_clear() && self.thickness == 0.0
+    }
+
     /// Whether no light enters: neither clear nor scattering.
     #[must_use]
     pub fn is_opaque(&self) -> bool {

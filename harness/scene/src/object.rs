@@ -19,6 +19,23 @@ pub struct Object {
     pub copies: Option<Copies>,
 }
 
+/// Returns for each body its place in the order of those that share space, the one that is there last: by
+/// [`Material::priority`], of equal ones by volume, the smaller last, and of equal volumes by number.
+#[must_use]
+pub fn precedence(objects: &[Object]) -> Vec<u32> {
+    let volumes: Vec<f64> = objects.iter().map(|object| object.mesh.volume_and_area().0).collect();
+    let mut bodies: Vec<usize> = (0..objects.len()).collect();
+    bodies.sort_by(|&one, &other| {
+        let by_priority = objects[one].material.priority.cmp(&objects[other].material.priority);
+        by_priority.then(volumes[other].total_cmp(&volumes[one]))
+    });
+    let mut places = vec![0; objects.len()];
+    for (place, body) in (0..).zip(bodies) {
+        places[body] = place;
+    }
+    places
+}
+
 impl Object {
     /// Returns a body that is shown once.
     #[must_use]

@@ -4,7 +4,7 @@ use super::merge::add;
 use crate::among::{self, Share};
 use crate::note::MOST_AROUND;
 use crate::{Decisions, Effect, Note, Objects, Rung};
-use lapidary_scene::{Bounds, Object, Scene};
+use lapidary_scene::{Bounds, Object, Scene, precedence};
 
 /// A body with its box.
 struct Boxed<'a> {
@@ -13,6 +13,8 @@ struct Boxed<'a> {
     /// Whether clear bodies that share its space are shown, and whether others are.
     nested: [bool; 2],
     bounds: Bounds,
+    /// Its place among bodies that share space: [`precedence`].
+    place: u32,
 }
 
 /// Says which bodies lie within clear ones whose rungs show nothing of them, and which share space with clear ones.
@@ -22,13 +24,15 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
         let is_alone = rungs.any(|rung| matches!(rung, Rung::Inside { .. }) && !rung.is_among());
         return is_alone.then_some(Note::NotCompared { count: scene.objects.len() }).into_iter().collect();
     }
-    let all = scene.objects.iter().zip(decisions).filter(|(object, _)| object.mesh.triangle_count() > 0);
+    let places = precedence(&scene.objects);
+    let all = scene.objects.iter().zip(decisions).zip(places);
+    let all = all.filter(|((object, _), _)| object.mesh.triangle_count() > 0);
     let bodies: Vec<Boxed<'_>> = all
-        .map(|(object, decisions)| {
+        .map(|((object, decisions), place)| {
             let bounds = Bounds::of(object.mesh.positions.iter().copied());
             let shows = |effect| decisions.rung == Rung::Reference || decisions.has(effect);
             let nested = [shows(Effect::Nested), shows(Effect::Nested) && shows(Effect::Around)];
-            Boxed { object, rung: decisions.rung, nested, bounds }
+            Boxed { object, rung: decisions.rung, nested, bounds, place }
         })
         .collect();
     let mut notes = Vec::new();
@@ -79,9 +83,8 @@ impl Boxed<'_> {
     /// Whether this body is there where both are: an opaque one is, and of clear ones as
     /// [`Material::priority`](lapidary_scene::Material::priority) has it.
     fn comes_before(&self, other: &Self) -> bool {
-        let key = |body: &Self| (!body.object.material.is_clear(), body.object.material.priority);
-        let smaller = || self.object.mesh.volume_and_area().0 <= other.object.mesh.volume_and_area().0;
-        key(self) > key(other) || key(self) == key(other) && smaller()
+        let key = |body: &Self| (!body.object.material.is_clear(), body.place);
+        key(self) > key(other)
     }
 
     fn share_within(&self, around: &Self) -> Share {

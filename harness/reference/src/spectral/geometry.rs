@@ -5,7 +5,7 @@ use super::cells::Cells;
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
 use super::matte::Mattes;
-use super::within::{Within, is_thin};
+use super::within::Within;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
 use lapidary_scene::polyhedron::Plane;
@@ -55,7 +55,9 @@ impl Bodies {
     /// Matte and smooth bodies are always met by their triangles, whose corners have the normals.
     pub(super) fn with_mattes(objects: &[Object], geometry: Geometry, mattes: Mattes) -> Self {
         let is_smooth = |object: &Object| {
-            object.material.is_clear() && !is_thin(object) && object.material.normals.are_smooth(&object.mesh)
+            object.material.is_clear()
+                && !object.material.is_thin_wall()
+                && object.material.normals.are_smooth(&object.mesh)
         };
         let smooth = objects.iter().map(|object| is_smooth(object).then(|| faces(&object.mesh))).collect();
         Self::with_faces(objects, geometry, mattes, smooth)

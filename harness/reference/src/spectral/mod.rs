@@ -43,7 +43,7 @@ use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surroundings};
-use within::{Order, Within, is_thin};
+use within::{Order, Within};
 
 /// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
@@ -327,7 +327,7 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                thin: scene.objects.iter().map(is_thin).collect(),
+                thin: scene.objects.iter().map(|object| object.material.is_thin_wall()).collect(),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },

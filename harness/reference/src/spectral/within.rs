@@ -5,15 +5,10 @@
 //! body of the smaller volume, so that a body that lies wholly inside another one is seen there.
 
 use glam::Vec3;
-use lapidary_scene::Object;
+use lapidary_scene::{Object, precedence};
 
 /// Largest number of bodies around a point; a ray that enters a further one is lost.
 pub(crate) const MOST: usize = 12;
-
-/// Whether a body is clear and has no inside.
-pub(super) fn is_thin(object: &Object) -> bool {
-    object.material.is_clear() && object.material.thickness == 0.0
-}
 
 /// For each body its place in the order of priorities, the highest last.
 #[derive(Debug)]
@@ -21,17 +16,7 @@ pub(super) struct Order(Vec<u32>);
 
 impl Order {
     pub(super) fn of(objects: &[Object]) -> Self {
-        let key = |body: usize| (objects[body].material.priority, -objects[body].mesh.volume_and_area().0);
-        let mut bodies: Vec<usize> = (0..objects.len()).collect();
-        bodies.sort_by(|&a, &b| {
-            let ((first, volume), (second, other)) = (key(a), key(b));
-            first.cmp(&second).then(volume.total_cmp(&other))
-        });
-        let mut places = vec![0; objects.len()];
-        for (place, body) in (0..).zip(bodies) {
-            places[body] = place;
-        }
-        Self(places)
+        Self(precedence(objects))
     }
 }
 
@@ -50,7 +35,7 @@ const _: () = assert!(lapidary_scene::gltf::MAX_OBJECTS <= 1 << u16::BITS && MOS
 impl Within {
     /// The clear bodies around a point; those beyond the largest number are left out.
     pub(super) fn around(point: Vec3, objects: &[Object]) -> Self {
-        let has_inside = |object: &Object| !object.material.is_opaque() && !is_thin(object);
+        let has_inside = |object: &Object| !object.material.is_opaque() && !object.material.is_thin_wall();
         let is_around = |object: &Object| has_inside(object) && object.mesh.encloses(point);
         let bodies = objects.iter().enumerate().filter(|(_, object)| is_around(object));
         bodies.fold(Self::default(), |within, (body, _)| within.with(body).unwrap_or(within))

@@ -6,9 +6,10 @@ use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
 use glam::{UVec4, Vec3, Vec4};
-use lapidary_plan::{Effect, Outside, Spectrum};
-use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, spectrum};
+use lapidary_plan::{Effect, Outside};
+use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, precedence};
 use std::cell::OnceCell;
+use std::cmp::Reverse;
 
 /// Bindings in group 0, from the nodes on.
 const FIRST: u32 = 11;
@@ -20,7 +21,6 @@ struct Body {
     /// Index of the object in the scene.
     object: usize,
     material: Material,
-    volume: f64,
     /// Range of the body's triangles among all.
     triangles: std::ops::Range<usize>,
 }
@@ -49,12 +49,9 @@ impl Hierarchy {
     pub(crate) fn new(builder: &mut Builder<'_>, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         let alone = settings.without.has(Effect::Around) || settings.gem.outside == Some(Outside::Environment);
         let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene, alone);
-        // Where bodies share space, the one of the lower number is there, and of equal ones the last, as in the reference.
-        bodies.sort_by(|one, other| {
-            let key = |body: &Body| (!body.material.is_clear(), std::cmp::Reverse(body.material.priority));
-            let last = other.triangles.start.cmp(&one.triangles.start);
-            key(one).cmp(&key(other)).then(one.volume.total_cmp(&other.volume)).then(last)
-        });
+        // Where bodies share space, the one of the lower number is there.
+        let places = precedence(&scene.objects);
+        bodies.sort_by_key(|body| (!body.material.is_clear(), Reverse((places[body.object], body.triangles.start))));
         let mut of_triangle = vec![0_u32; indices.len() / 3];
         for (number, body) in (0..).zip(&bodies) {
             of_triangle[body.triangles.clone()].fill(number);
@@ -121,23 +118,9 @@ impl Hierarchy {
         &self.triangles[object]
     }
 
-    /// Returns `SceneWavelength` of the recipe for each wavelength, and every body's index of refraction at each.
-    pub(crate) fn wavelengths(&self, spectrum: Spectrum) -> (Vec<Record>, Vec<f32>) {
-        let weights = |weights: glam::DMat3| Record::new("SceneWavelength").with("weights", weights.as_mat3());
-        match spectrum {
-            Spectrum::Separate(3) => {
-                let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(glam::DMat3::from_diagonal);
-                let index = |channel: usize| self.materials.iter().map(move |body| body.channel_indices()[channel]);
-                (channels.into_iter().map(weights).collect(), (0..3).flat_map(index).collect())
-            }
-            Spectrum::Separate(count) => {
-                let all = spectrum::weights(count as usize);
-                let index = |at: f64| self.materials.iter().map(move |body| body.index_at(at) as f32);
-                let indices = all.iter().flat_map(|wavelength| index(wavelength.nanometres)).collect();
-                (all.iter().map(|wavelength| weights(wavelength.weights)).collect(), indices)
-            }
-            _ => (vec![weights(glam::DMat3::IDENTITY)], self.materials.iter().map(|body| body.ior).collect()),
-        }
+    /// Returns the bodies' materials, by number.
+    pub(crate) fn materials(&self) -> &[Material] {
+        &self.materials
     }
 }
 
@@ -173,10 +156,9 @@ impl Bodies {
     fn add(&mut self, number: usize, object: &Object, first: usize) {
         let copies = object.copies.as_ref().map_or(1, |copies| copies.places.len());
         let each = object.mesh.triangle_count() / copies.max(1);
-        let volume = object.mesh.volume_and_area().0;
         for (copy, material) in object.materials().enumerate() {
             let start = first + copy * each;
-            self.bodies.push(Body { object: number, material, volume, triangles: start..start + each });
+            self.bodies.push(Body { object: number, material, triangles: start..start + each });
         }
     }
 }
@@ -185,7 +167,7 @@ impl Bodies {
 fn record(material: &Material) -> Record {
     let kind = match material {
         _ if !material.is_clear() => 2_u32,
-        _ if material.thickness == 0.0 => 1,
+        _ if material.is_thin_wall() => 1,
         _ => 0,
     };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
@@ -195,7 +177,7 @@ fn record(material: &Material) -> Record {
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.
 fn around(eye: Vec3, bodies: &[Body], mesh: impl Fn(&Body) -> Mesh) -> UVec4 {
-    let has_inside = |body: &Body| body.material.is_clear() && body.material.thickness > 0.0;
+    let has_inside = |body: &Body| body.material.is_clear() && !body.material.is_thin_wall();
     let is_around = |body: &Body| has_inside(body) && mesh(body).encloses(eye);
     let mut within = [NONE; 4];
     let found = (0..).zip(bodies).filter(|(_, body)| is_around(body)).map(|(number, _): (u32, _)| 2 * number);

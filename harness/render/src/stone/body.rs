@@ -2,7 +2,7 @@
 
 use super::geometry::{Geometries, check_steps};
 use super::material::GemMaterial;
-use super::wavelengths::{GemWavelength, wavelengths};
+use super::wavelengths::{GemWavelength, of_bodies, wavelengths};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Builder, PipelineId};
@@ -85,7 +85,7 @@ pub(crate) fn add_among(
     let number = scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
     let triangles = hierarchy.triangles(number);
     let vertices = 3 * triangles.len() as u32;
-    let (wavelengths, indices) = hierarchy.wavelengths(rung.spectrum());
+    let (wavelengths, indices) = of_bodies(hierarchy.materials(), rung.spectrum());
     Ok(builder.of_object(name, |builder| {
         let mut bound: Vec<(u32, Bound)> = Vec::new();
         if builder.binds(pipeline, 1, 0) {

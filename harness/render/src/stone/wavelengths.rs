@@ -35,3 +35,13 @@ pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<GemWav
             .collect(),
     }
 }
+
+/// Returns `SceneWavelength` of the recipe for each wavelength, and every body's index of refraction at each, wavelength by
+/// wavelength.
+pub(super) fn of_bodies(materials: &[Material], spectrum: Spectrum) -> (Vec<Record>, Vec<f32>) {
+    let tables: Vec<Vec<GemWavelength>> = materials.iter().map(|material| wavelengths(material, spectrum)).collect();
+    let first = tables.first().map_or(&[][..], Vec::as_slice);
+    let weights = first.iter().map(|entry| Record::new("SceneWavelength").with("weights", entry.weights)).collect();
+    let indices = (0..first.len()).flat_map(|place| tables.iter().map(move |table| table[place].index)).collect();
+    (weights, indices)
+}
