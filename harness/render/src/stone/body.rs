@@ -82,7 +82,8 @@ pub(crate) fn add_among(
     rung: Rung,
 ) -> Result<Body, RenderError> {
     check_steps(builder, rung, hierarchy.steps)?;
-    let number = scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
+    let number = scene.objects.iter().position(|other| std::ptr::eq(other, *object));
+    let number = number.expect("what is drawn is borrowed from the scene");
     let triangles = hierarchy.triangles(number);
     let vertices = 3 * triangles.len() as u32;
     let (wavelengths, indices) = of_bodies(hierarchy.materials(), rung.spectrum());
