@@ -48,8 +48,9 @@ fn ray_footprint_edge(
 ) -> vec3f {
     let slope = dot(nearest, direction);
     let slope_runner_up = dot(runner_up, direction);
-    // Perpendicular to the ray, so that parts of the offsets along it drop out.
-    let across = slope * runner_up - slope_runner_up * nearest;
+    // Perpendicular to the ray, so that parts of the offsets along it drop out: slope * runner_up -
+    // slope_runner_up * nearest, which would cancel where the planes are nearly one.
+    let across = cross(direction, cross(runner_up - nearest, nearest));
     return vec3f(gap * slope * slope_runner_up, dot(across, right), dot(across, down));
 }
 

@@ -31,8 +31,9 @@ pub fn growth(distance: f32, travelled: f32, relative_index: f32) -> f32 {
 pub fn edge(direction: Vec3, right: Vec3, down: Vec3, nearest: Vec3, runner_up: Vec3, gap: f32) -> Vec3 {
     let slope = nearest.dot(direction);
     let slope_runner_up = runner_up.dot(direction);
-    // Perpendicular to the ray, so that parts of the offsets along it drop out.
-    let across = slope * runner_up - slope_runner_up * nearest;
+    // Perpendicular to the ray, so that parts of the offsets along it drop out: slope * runner_up -
+    // slope_runner_up * nearest, which would cancel where the planes are nearly one.
+    let across = direction.cross((runner_up - nearest).cross(nearest));
     vec3(gap * slope * slope_runner_up, across.dot(right), across.dot(down))
 }
 
