@@ -1,6 +1,6 @@
 // microfacet: a rough dielectric's highlight: Cook and Torrance's reflectance, Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0
+// Version: 0.3.0
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
 //   Surfaces", 2007, eq. (20), (33); Heitz, "Understanding the Masking-Shadowing Function in
 //   Microfacet-Based BRDFs", 2014, eq. (72), (99); Lagrange's identity for the squared sine: Guy
@@ -77,6 +77,35 @@ fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 
 fn microfacet_half(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     let sum = toward_light + toward_eye;
     return sum / sqrt(max(dot(sum, sum), MICROFACET_OPPOSITE));
+}
+
+// A facet that the eye sees, at random: of the unit square of u and turns, each part stands for as many as it has area.
+// Stretched by 1 / alpha the facets are those of a hemisphere, which reflects the eye's rays evenly into a cap. Its
+// height above the surface plane is a product; as a difference it would be lost where eye and facet are grazing.
+// Returns: unit normal, on the surface's side and the eye's.
+// Units: none; alpha is a slope.
+// Domain: unit vectors with normal . toward_eye at least 0; any alpha, clamped to [0.001, 1]; u in [0, 1), a multiple of
+//   2^-24; azimuth (cos, sin) of any angle, 2 pi turns. It turns about the normal, from a direction that jumps where
+//   normal.z changes sign, as any must somewhere.
+// Outside: finite; an eye below the surface sees the facets' backs.
+// Accuracy: lavapipe 20 ulp + 6 backward; portable 56 ulp + 12 backward
+fn microfacet_facet(normal: vec3f, toward_eye: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> vec3f {
+    let a = clamp(alpha, MICROFACET_SMOOTHEST, 1.0f);
+    let height = dot(normal, toward_eye);
+    let along = a * (toward_eye - height * normal);
+    let inverse = 1.0f / sqrt(dot(along, along) + height * height);
+    let cosine = clamp(inverse * height, -1.0f, 1.0f);
+    let sine_squared = inverse * inverse * dot(along, along);
+    // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
+    let rise = (1.0f - u) * (1.0f + cosine);
+    let sine = sqrt(u * ((1.0f + cosine) * rise + sine_squared));
+    // The cap's direction along the surface: that in the plane z = 0, turned by half a turn about the middle of the
+    // normal and the z axis.
+    let middle = normal + vec3f(0.0f, 0.0f, select(1.0f, -1.0f, normal.z < 0.0f));
+    let level = sine * azimuth;
+    let turned = dot(middle.xy, level) / (1.0f + abs(normal.z)) * middle - vec3f(level, 0.0f);
+    let facet = a * (inverse * along + turned) + rise * normal;
+    return facet / sqrt(max(dot(facet, facet), MICROFACET_OPPOSITE));
 }
 
 // Share of a light's irradiance, measured perpendicular to its direction, that the rough surface reflects into

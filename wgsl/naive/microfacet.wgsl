@@ -40,3 +40,23 @@ fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -
 fn microfacet_half_naive(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     return normalize(toward_light + toward_eye);
 }
+
+// A facet that the eye sees, as Dupuy and Benyoub print it. Kept to show where it fails: near the middle of the cap its sine
+// is the root of a difference, and the normal -z has no half turn about the middle.
+// Returns: unit normal.
+// Units: none; alpha is a slope.
+// Domain: unit vectors with normal . toward_eye above 0, alpha in (0, 1], u in (0, 1), azimuth a unit vector.
+// Outside: not a number for a normal along -z.
+// Accuracy: naive
+fn microfacet_facet_naive(normal: vec3f, toward_eye: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> vec3f {
+    let height = dot(normal, toward_eye);
+    let eye = normalize(alpha * (toward_eye - height * normal) + height * normal);
+    let cosine = dot(normal, eye);
+    let z = (1.0f - u) * (1.0f + cosine) - cosine;
+    let level = sqrt(1.0f - z * z) * azimuth;
+    let middle = normal + vec3f(0.0f, 0.0f, 1.0f);
+    let cap = vec3f(level, z);
+    let half = eye + dot(middle, cap) / middle.z * middle - cap;
+    let rise = dot(normal, half);
+    return normalize(alpha * (half - rise * normal) + rise * normal);
+}

@@ -3,7 +3,7 @@
 mod outside;
 
 use crate::{self as mirror, oracle};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use std::f64::consts::PI;
@@ -131,7 +131,8 @@ pub fn formulas() -> Vec<Formula> {
 }
 
 fn functions() -> Vec<Formula> {
-    vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive(), reflectance()]
+    let all = [vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive()], facets()];
+    all.into_iter().flatten().chain([reflectance()]).collect()
 }
 
 fn distribution() -> Formula {
@@ -285,6 +286,77 @@ fn half_naive() -> Formula {
     })
     .benign(1e-5)
     .build()
+}
+
+/// Normal, direction towards the eye, alpha, u and azimuth.
+type Seen = (Vec3, Vec3, f32, f32, Vec2);
+
+/// Draws an eye above a surface, alpha and the place of a facet among those that it sees.
+fn seen(draws: &mut Draws<'_>) -> Seen {
+    let normal = match draws.below(8) {
+        0 => draws.pick(&[Vec3::Z, Vec3::NEG_Z, Vec3::X]),
+        _ => draws.unit_vector(),
+    };
+    let axis = normal.as_dvec3().normalize();
+    let up = match draws.below(6) {
+        0 => draws.pick(&[0.0, 1.0]),
+        1 => draws.magnitude(-24, -1),
+        2 => 1.0 - draws.magnitude(-24, -1),
+        _ => draws.between(0.0, 1.0),
+    };
+    let up = f64::from(up);
+    let eye = (up * axis + ((1.0 - up) * (1.0 + up)).sqrt() * draws.perpendicular(axis)).as_vec3();
+    // Rounding may put an eye at the surface below it.
+    let eye = if normal.dot(eye) < 0.0 { eye - 2.0 * normal.dot(eye) * normal } else { eye };
+    // Multiples of 2^-24.
+    let u = match draws.below(6) {
+        0 => draws.pick(&[0.0, 1.0f32.next_down(), 0.5]),
+        1 => draws.magnitude(-23, -1),
+        2 => 1.0 - draws.magnitude(-23, -1),
+        _ => draws.between(0.0, 1.0),
+    };
+    let u = (u * 16_777_216.0).floor().min(16_777_215.0) / 16_777_216.0;
+    let turns = std::f64::consts::TAU * draws.unit();
+    (normal, eye, alpha(draws), u, Vec2::new(turns.cos() as f32, turns.sin() as f32))
+}
+
+fn facets() -> Vec<Formula> {
+    const NAIVE: &str = "microfacet_facet_naive";
+    // Beside the middle of the cap, along y.
+    let beside: Seen = (Vec3::Z, Vec3::new(0.6, 0.0, 0.8), 1.0, 2f32.powi(-24), Vec2::Y);
+    let beside_limit = {
+        let risen = f64::from(beside.3) * 1.8;
+        let half = DVec3::new(0.6, -(risen * (2.0 - risen)).sqrt(), 1.8 - risen);
+        half.normalize().to_array()
+    };
+    let down: Seen = (Vec3::NEG_Z, Vec3::NEG_Z, 0.5, 0.0, Vec2::X);
+    vec![
+        formula(M, "microfacet_facet", mirror::facet, oracle::facet, seen)
+            .edge("the eye exactly grazing", |(normal, eye, ..)| normal.dot(eye) == 0.0)
+            .edge("the eye along the normal", |(normal, eye, ..)| normal == eye)
+            .edge("the middle of the cap", |(.., u, _)| u == 0.0)
+            .edge("the cap's edge", |(.., u, _)| u == 1.0f32.next_down())
+            .edge("a normal along -z", |(normal, ..)| normal == Vec3::NEG_Z)
+            .edge("alpha below its least", |(_, _, alpha, ..)| alpha < 0.001)
+            .edge("alpha above its greatest", |(_, _, alpha, ..)| alpha > 1.0)
+            .invariant("unit length", |_, facet: Vec3| near("length", facet.as_dvec3().length(), 1.0, UNIT))
+            .invariant("on the surface's side and the eye's", |(normal, eye, _, u, _), facet: Vec3| {
+                let least = dot(normal, facet).min(dot(eye, facet));
+                // The sum of the two directions is no shorter than 1 - u, and rounded by as much as they are.
+                if least >= -UNIT / f64::from(1.0 - u) { Ok(()) } else { Err(format!("a cosine of {least}")) }
+            })
+            .hard_case("beside the middle of the cap", beside, (&beside_limit, 1e-6), (NAIVE, 5e-5))
+            .hard_case("a normal along -z", down, (&[0.0, 0.0, -1.0], 1e-6), (NAIVE, f64::INFINITY))
+            .build(),
+        formula(M, NAIVE, mirror::facet_naive, oracle::facet_naive, |draws| {
+            let eye = (draws.direction() + 1.5 * DVec3::Z).normalize().as_vec3();
+            let turns = std::f64::consts::TAU * draws.unit();
+            let azimuth = Vec2::new(turns.cos() as f32, turns.sin() as f32);
+            (Vec3::Z, eye, draws.between(0.2, 1.0), draws.between(0.1, 0.8), azimuth)
+        })
+        .benign(2e-5)
+        .build(),
+    ]
 }
 
 fn reflectance() -> Formula {

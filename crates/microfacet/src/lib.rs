@@ -2,7 +2,7 @@
 //! states the units, domain and accuracy of each function. This file follows it line by line.
 //!
 //! ```
-//! use glam::Vec3;
+//! use glam::{Vec2, Vec3};
 //! use lapidary_microfacet::reflectance;
 //!
 //! // Towards the mirror direction and away from it, at a roughness of 0.3 squared.
@@ -14,7 +14,7 @@
 pub mod formulas;
 pub mod oracle;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Smallest alpha; smaller values count as this one.
@@ -79,6 +79,40 @@ pub fn half(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
 /// Normalizes the sum, a naive form.
 pub fn half_naive(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
     (toward_light + toward_eye).normalize()
+}
+
+/// Returns the normal of a facet that the eye sees, at random by `u` and `azimuth`, the cosine and sine of a random angle.
+pub fn facet(normal: Vec3, toward_eye: Vec3, alpha: f32, u: f32, azimuth: Vec2) -> Vec3 {
+    let a = alpha.clamp(MICROFACET_SMOOTHEST, 1.0);
+    let height = normal.dot(toward_eye);
+    let along = a * (toward_eye - height * normal);
+    let inverse = 1.0 / (along.dot(along) + height * height).sqrt();
+    let cosine = (inverse * height).clamp(-1.0, 1.0);
+    let sine_squared = inverse * inverse * along.dot(along);
+    // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
+    let rise = (1.0 - u) * (1.0 + cosine);
+    let sine = (u * ((1.0 + cosine) * rise + sine_squared)).sqrt();
+    // The cap's direction along the surface: that in the plane z = 0, turned by half a turn about the middle of the
+    // normal and the z axis.
+    let middle = normal + Vec3::new(0.0, 0.0, if normal.z < 0.0 { -1.0 } else { 1.0 });
+    let level = sine * azimuth;
+    let turned = middle.truncate().dot(level) / (1.0 + normal.z.abs()) * middle - level.extend(0.0);
+    let facet = a * (inverse * along + turned) + rise * normal;
+    facet / facet.dot(facet).max(MICROFACET_OPPOSITE).sqrt()
+}
+
+/// Returns the same with the cap's height and its sine from their difference, a naive form.
+pub fn facet_naive(normal: Vec3, toward_eye: Vec3, alpha: f32, u: f32, azimuth: Vec2) -> Vec3 {
+    let height = normal.dot(toward_eye);
+    let eye = (alpha * (toward_eye - height * normal) + height * normal).normalize();
+    let cosine = normal.dot(eye);
+    let z = (1.0 - u) * (1.0 + cosine) - cosine;
+    let level = (1.0 - z * z).sqrt() * azimuth;
+    let middle = normal + Vec3::Z;
+    let cap = level.extend(z);
+    let half = eye + middle.dot(cap) / middle.z * middle - cap;
+    let rise = normal.dot(half);
+    (alpha * (half - rise * normal) + rise * normal).normalize()
 }
 
 /// Returns the BRDF times n . l, in 1/sr; `fresnel` is the share of light that a facet reflects.

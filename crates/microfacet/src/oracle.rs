@@ -2,7 +2,7 @@
 //! the length of a stretched direction; the half vector from its azimuth and elevation. The mirror
 //! uses neither angles nor slopes.
 
-use glam::DVec3;
+use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 
 // The module's constants, repeated so that an error in them does not carry over to the oracle.
@@ -84,4 +84,29 @@ pub fn reflectance(normal: DVec3, toward_light: DVec3, toward_eye: DVec3, alpha:
     let [light, eye] = [toward_light, toward_eye].map(|toward| normal.dot(toward));
     let density = distribution(normal, half(toward_light, toward_eye), alpha);
     fresnel * density * visibility(light, eye, alpha) * light.max(0.0)
+}
+
+/// Finds the facet on the hemisphere that stretching makes of the facets: it lies halfway between the eye and a direction in a
+/// cap around the normal, from whose edge on the hemisphere reflects the eye's rays downwards. The cap is turned by half a
+/// turn about the middle of the normal and the z axis, on the normal's side.
+pub fn facet(normal: DVec3, toward_eye: DVec3, alpha: f64, u: f64, azimuth: DVec2) -> DVec3 {
+    let alpha = alpha.clamp(SMOOTHEST, 1.0);
+    let height = normal.dot(toward_eye);
+    let along = toward_eye - height * normal;
+    let eye = (height * normal + alpha * along).normalize();
+    let cosine = normal.dot(eye).clamp(-1.0, 1.0);
+    // Of the cap's height 1 + cosine, the share u lies above.
+    let polar = 2.0 * (0.5 * u * (1.0 + cosine)).sqrt().asin();
+    let side = if normal.z < 0.0 { -1.0 } else { 1.0 };
+    let level = polar.sin() * azimuth;
+    let turn = DQuat::from_axis_angle((normal + side * DVec3::Z).normalize(), PI);
+    let cap = turn * DVec3::new(level.x, level.y, side * polar.cos());
+    let half = eye + cap;
+    let upward = normal.dot(half);
+    (upward * normal + alpha * (half - upward * normal)).normalize()
+}
+
+/// Calls [`facet`]: the naive form is the same function, computed badly.
+pub fn facet_naive(normal: DVec3, toward_eye: DVec3, alpha: f64, u: f64, azimuth: DVec2) -> DVec3 {
+    facet(normal, toward_eye, alpha, u, azimuth)
 }

@@ -216,3 +216,35 @@ fn table_of_errors_is_current() {
     let page = include_str!("../../../docs/microfacet.md");
     assert!(page.contains(&table), "docs/microfacet.md should hold:\n{table}");
 }
+
+/// What an eye at a cosine sees of all facets: masked and foreshortened, so that its integral is 1.
+fn visible(eye: DVec3, facet: DVec3, alpha: f64) -> f64 {
+    let tangent = (1.0 - eye.z * eye.z).sqrt() / eye.z;
+    let unmasked = 2.0 / (1.0 + (1.0 + (alpha * tangent).powi(2)).sqrt());
+    oracle::distribution(DVec3::Z, facet, alpha) * unmasked * eye.dot(facet).max(0.0) / eye.z
+}
+
+#[test]
+fn facets_are_drawn_as_the_eye_sees_them() {
+    for alpha in [0.1, 0.25, 0.5, 1.0] {
+        for cosine in [1.0, 0.7, 0.3, 0.1] {
+            let eye = eye(cosine);
+            let side = 400;
+            let places = (0..side * side).map(|place| (place % side, place / side));
+            let drawn = |of: fn(DVec3) -> f64| {
+                let each = places.clone().map(|(column, row)| {
+                    let [u, turns] = [column, row].map(|place| (f64::from(place) + 0.5) / f64::from(side));
+                    let azimuth = Vec2::from_angle((2.0 * PI * turns) as f32);
+                    of(facet(Vec3::Z, eye.as_vec3(), alpha as f32, u as f32, azimuth).as_dvec3())
+                });
+                each.sum::<f64>() / f64::from(side * side)
+            };
+            let by_area = |of: fn(DVec3) -> f64| over_facets(alpha, 400, |m| visible(eye, m, alpha) * of(m));
+            let moments: [fn(DVec3) -> f64; 4] = [|_| 1.0, |m| m.z, |m| m.x, |m| m.z * m.z];
+            for (number, of) in moments.into_iter().enumerate() {
+                let (drawn, by_area) = (drawn(of), by_area(of));
+                assert!((drawn - by_area).abs() < 2e-3, "{alpha} {cosine} {number}: {drawn} {by_area}");
+            }
+        }
+    }
+}

@@ -145,6 +145,9 @@ impl Material {
     /// infrared, and no visibly clear material comes near.
     pub const LARGEST_INDEX: f32 = 4.0;
 
+    /// Largest roughness of a surface that counts as polished: the facets of a rougher one are steeper than 0.001.
+    pub const POLISHED: f32 = 0.0316;
+
     /// Returns which field is invalid and what to do, or `None` if the material is valid.
     #[must_use]
     pub fn problem(&self) -> Option<&'static str> {
@@ -258,6 +261,23 @@ impl Material {
     #[must_use]
     pub fn is_thin_wall(&self) -> bool {
         self.is_clear() && self.thickness == 0.0
+    }
+
+    /// Returns the width of the slopes of a clear body's facets; 0 if it is polished, as it counts below
+    /// [`POLISHED`](Self::POLISHED).
+    #[must_use]
+    pub fn facet_slope(&self) -> f32 {
+        if self.is_clear() && self.roughness > Self::POLISHED { self.roughness * self.roughness } else { 0.0 }
+    }
+
+    /// Returns the share of the light that comes to the surface, and is not reflected, that enters: 0 for an opaque body, 1
+    /// for one that scatters inside.
+    #[must_use]
+    pub fn clear_share(&self) -> f32 {
+        match self {
+            _ if self.scatters() => 1.0,
+            _ => self.transmission,
+        }
     }
 
     /// Whether no light enters: neither clear nor scattering.

@@ -44,6 +44,24 @@ pub(super) fn promises() -> Vec<Promise> {
                 close(&half.to_array(), &(light.as_dvec3() + eye.as_dvec3()).normalize().to_array(), 4e-6)
             },
         ),
+        finite("microfacet_facet", "finite", |draws| {
+            let turns = draws.unit() * std::f64::consts::TAU;
+            let azimuth = glam::Vec2::new(turns.cos() as f32, turns.sin() as f32);
+            let (normal, eye) = (draws.unit_vector(), draws.unit_vector());
+            (normal, eye, draws.between(0.001, 1.0), draws.between(0.0, 0.999), azimuth)
+        }),
+        holds(
+            "microfacet_facet",
+            "an eye below the surface sees the facets' backs",
+            |draws| {
+                let azimuth = glam::Vec2::from_angle(draws.between(0.0, 6.0));
+                let eye = (draws.direction() - 1.5 * DVec3::Z).normalize().as_vec3();
+                (Vec3::Z, eye, draws.between(0.1, 1.0), draws.between(0.0, 0.999), azimuth)
+            },
+            |(_, eye, ..): (Vec3, Vec3, f32, f32, glam::Vec2), facet: Vec3| {
+                that(facet.z >= 0.0 && facet.dot(eye) >= -1e-5, || format!("{facet}"))
+            },
+        ),
         finite(REFLECTANCE, "for vectors of other lengths finite, but no reflectance", |draws| {
             (of_length(draws, -10, 10), of_length(draws, -10, 10), of_length(draws, -10, 10), any_finite(draws), 1.0f32)
         }),

@@ -121,6 +121,11 @@ impl Bodies {
         self.mattes.sent(hit, point)
     }
 
+    /// Returns the radiance that the matte share of a partly clear surface adds; `flat` is the face's normal.
+    pub(super) fn sent_in_part(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+        self.mattes.sent_in_part(place, flat, point)
+    }
+
     /// Returns where a ray that comes to `hit` at `point` meets the body's surface, and the outward unit normal that reflects
     /// and refracts there: those of the curved surface if the body is smooth.
     pub(super) fn curved(&self, hit: &Hit, point: DVec3, direction: DVec3) -> (DVec3, DVec3) {

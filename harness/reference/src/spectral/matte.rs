@@ -1,4 +1,5 @@
-//! Matte bodies: opaque, and of the same radiance seen from all sides.
+//! Matte bodies: opaque, and of the same radiance seen from all sides. A partly clear body's surface is so for a share of the
+//! light.
 
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
@@ -13,7 +14,7 @@ use std::f64::consts::PI;
 /// `cdrf_shading`, which follow a small bright light only roughly.
 #[derive(Default)]
 pub(super) struct Mattes {
-    /// One entry for each body of the scene, `None` for a clear one; empty if no body is matte.
+    /// One entry for each body of the scene, `None` for one that is wholly clear; empty if all are.
     bodies: Vec<Option<Matte>>,
     /// Coefficients of the environment's harmonics; 0 if it does not count.
     around: [DVec3; COUNT],
@@ -21,6 +22,8 @@ pub(super) struct Mattes {
 }
 
 struct Matte {
+    /// Share of the light that does not enter, 1 for an opaque body.
+    share: f64,
     /// Factor from irradiance to radiance: the base colour / π.
     reflectance: DVec3,
     /// Numbered like the body's triangles.
@@ -28,9 +31,9 @@ struct Matte {
 }
 
 impl Mattes {
-    /// Takes the opaque bodies of `scene` as matte, lit by its lights and `environment`.
+    /// Takes the opaque and partly clear bodies of `scene` as matte, lit by its lights and `environment`.
     pub(super) fn new(scene: &Scene, environment: Option<&Environment>) -> Self {
-        let is_matte = |object: &Object| object.material.is_opaque();
+        let is_matte = |object: &Object| object.material.clear_share() < 1.0;
         if !scene.objects.iter().any(is_matte) {
             return Self::default();
         }
@@ -43,25 +46,38 @@ impl Mattes {
 
     /// Whether this body is matte.
     pub(super) fn has(&self, body: usize) -> bool {
-        matches!(self.bodies.get(body), Some(Some(_)))
+        matches!(self.bodies.get(body), Some(Some(matte)) if matte.share == 1.0)
     }
 
     /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
     /// the body is clear.
     pub(super) fn sent(&self, hit: &Hit, point: DVec3) -> Option<DVec3> {
-        let Place { body, face } = hit.place;
-        let matte = self.bodies.get(body)?.as_ref()?;
-        let normal = matte.faces.get(face).map_or(hit.normal, |face| face.normal(point, hit.normal));
+        let matte = self.bodies.get(hit.place.body)?.as_ref().filter(|matte| matte.share == 1.0)?;
+        Some(self.sent_by(matte, hit.place, hit.normal, point))
+    }
+
+    /// Returns the radiance that the matte share of a body's surface adds.
+    pub(super) fn sent_in_part(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+        let matte = self.bodies.get(place.body).and_then(Option::as_ref);
+        matte.map_or(DVec3::ZERO, |matte| matte.share * self.sent_by(matte, place, flat, point))
+    }
+
+    fn sent_by(&self, matte: &Matte, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+        let normal = matte.faces.get(place.face).map_or(flat, |face| face.normal(point, flat));
         let lights = self.lights.iter().map(|light| {
             let arrival = light.arrival(point);
             arrival.direction.dot(normal).max(0.0) * arrival.irradiance
         });
-        Some(matte.reflectance * (harmonics::irradiance(&self.around, normal) + lights.sum::<DVec3>()))
+        matte.reflectance * (harmonics::irradiance(&self.around, normal) + lights.sum::<DVec3>())
     }
 }
 
 impl Matte {
     fn new(object: &Object) -> Self {
-        Self { reflectance: object.material.base_color.as_dvec3() / PI, faces: faces(&object.mesh) }
+        Self {
+            share: 1.0 - f64::from(object.material.clear_share()),
+            reflectance: object.material.base_color.as_dvec3() / PI,
+            faces: faces(&object.mesh),
+        }
     }
 }

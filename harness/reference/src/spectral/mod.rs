@@ -28,11 +28,13 @@ mod face;
 pub(crate) mod geometry;
 pub(crate) mod hit;
 mod matte;
+mod rough;
 mod trace;
 mod within;
 
 pub use geometry::Geometry;
 
+use crate::random_walk::generator;
 use geometry::Bodies;
 use glam::{DMat3, DVec3};
 use lapidary_absorption::oracle as absorption;
@@ -42,7 +44,7 @@ use lapidary_scene::{Environment, LARGEST_SIDE, Light, Object, SAMPLES, Scene};
 use matte::Mattes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use trace::{Optics, Primary, Surroundings};
+use trace::{Optics, Primary, Surface, Surroundings};
 use within::{Order, Within};
 
 /// Default number of wavelengths.
@@ -51,6 +53,10 @@ pub const WAVELENGTHS: usize = 31;
 pub const ENERGY_BOUND: f64 = 1e-4;
 /// Largest number of wavelengths in a spectrum.
 pub const MOST_WAVELENGTHS: usize = 301;
+/// Number of ways that light takes for each sample and wavelength, if any body is rough.
+const ROUGH_PATHS: u32 = 16;
+/// Seed of these ways.
+const SEED: u64 = 1;
 /// Largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 64;
 
@@ -327,7 +333,7 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                thin: scene.objects.iter().map(|object| object.material.is_thin_wall()).collect(),
+                surfaces: scene.objects.iter().map(surface).collect(),
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },
@@ -342,11 +348,13 @@ impl<'scene> Job<'scene> {
             move |index: u32, sample: u32| f64::from(index) + (f64::from(sample) + 0.5) / f64::from(self.samples);
         (0..self.samples * self.samples).map(move |sample| {
             let (row, column) = (sample / self.samples, sample % self.samples);
-            self.sample(self.view.direction(place(x, column), place(y, row)))
+            // The same numbers on any number of threads.
+            let counter = (u64::from(y) << 32 | u64::from(x)) * u64::from(self.samples * self.samples) + u64::from(sample);
+            self.sample(self.view.direction(place(x, column), place(y, row)), counter)
         })
     }
 
-    fn sample(&self, direction: DVec3) -> Pixel {
+    fn sample(&self, direction: DVec3, counter: u64) -> Pixel {
         let mut sample = Pixel::default();
         let Some(primary) = self.surroundings.primary(self.view.eye, direction) else { return sample };
         sample.covered = 1;
@@ -355,11 +363,16 @@ impl<'scene> Job<'scene> {
             sample.radiance = radiance;
             return sample;
         }
+        let paths = if self.surroundings.is_rough() { ROUGH_PATHS } else { 1 };
+        let share = f64::from(paths).recip();
+        let mut random = generator(SEED, counter);
         for Band { weights, count, optics } in &self.spectrum {
-            let outcome = self.surroundings.follow(&primary, optics);
-            sample.radiance += *weights * outcome.radiance;
-            sample.lost_sum += f64::from(*count) * outcome.lost;
-            sample.lost_max = sample.lost_max.max(outcome.lost);
+            for _ in 0..paths {
+                let outcome = self.surroundings.follow(&primary, optics, &mut random);
+                sample.radiance += share * *weights * outcome.radiance;
+                sample.lost_sum += share * f64::from(*count) * outcome.lost;
+                sample.lost_max = sample.lost_max.max(outcome.lost);
+            }
         }
         sample
     }
@@ -383,6 +396,13 @@ impl Pixel {
 /// Returns the lights with the radii of their discs.
 fn lights(scene: &Scene) -> Vec<(Light, f64)> {
     scene.lights.iter().enumerate().map(|(number, light)| (*light, scene.light_radius(number).into())).collect()
+}
+
+/// Returns the properties of a body's surface.
+fn surface(object: &Object) -> Surface {
+    let material = &object.material;
+    let alpha = f64::from(material.facet_slope());
+    Surface { is_thin: material.is_thin_wall(), alpha, clear: f64::from(material.clear_share()) }
 }
 
 /// Returns the optical properties of a body at one wavelength.

@@ -63,7 +63,7 @@ fn white_furnace() {
                 let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
                 met += 1;
                 for Band { optics, .. } in &job.spectrum {
-                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics, &mut generator(1, 0));
                     assert!(
                         largest((radiance + lost - 1.0).abs().to_array()) <= 1e-9,
                         "{name}: {radiance} with {lost} lost"
@@ -301,7 +301,7 @@ fn white_furnace_with_a_matte_body() {
         let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
         met[usize::from(matches!(primary, Primary::Matte(_)))] += 1;
         for Band { optics, .. } in &job.spectrum {
-            let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+            let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics, &mut generator(1, 0));
             assert!(largest((radiance + lost - 1.0).abs().to_array()) <= 5e-5, "{radiance} with {lost} lost");
         }
     }
@@ -319,7 +319,7 @@ fn with_inclusion(index: f32, inclusion: Material) -> Scene {
     let mut scene = Scene::named("octahedron").unwrap();
     let cube = PrismParameters { sides: 4, radius: 1.4, half_length: 1.0, cap_degrees: 0.0 };
     let cube = prism(&cube).unwrap().to_mesh(Averaging::Angle);
-    let clear = Material { transmission: 1.0, thickness: 1.0, ior: index, ..Material::standard() };
+    let clear = Material { transmission: 1.0, thickness: 1.0, roughness: 0.0, ior: index, ..Material::standard() };
     scene.objects = vec![Object::new("block", cube, clear), Object::new("inclusion", sphere(0.33, 64), inclusion)];
     scene.seen_from(65.0, 20.0)
 }
@@ -330,7 +330,7 @@ fn a_body_within_another_is_seen_and_keeps_the_energy() {
     let environment = ones();
     let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
     let clear =
-        |ior, base_color| Material { transmission: 1.0, thickness: 1.0, ior, base_color, ..Material::standard() };
+        |ior, base_color| Material { transmission: 1.0, thickness: 1.0, roughness: 0.0, ior, base_color, ..Material::standard() };
     for index in [1.0, 1.5, 2.4] {
         for inclusion in [Material::standard(), clear(1.0, Vec3::ONE), clear(1.3, Vec3::ONE), clear(2.4, Vec3::ONE)] {
             let job = Job::new(&with_inclusion(index, inclusion.clone()), &settings);
@@ -340,7 +340,7 @@ fn a_body_within_another_is_seen_and_keeps_the_energy() {
                 let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
                 met += 1;
                 for Band { optics, .. } in &job.spectrum {
-                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics, &mut generator(1, 0));
                     // The harmonics of a matte ball's light are that accurate.
                     let off = largest((radiance + lost - 1.0).abs().to_array());
                     assert!(off <= 5e-5, "{index} {}: {radiance} with {lost} lost", inclusion.ior);
@@ -427,7 +427,7 @@ fn the_first_reflection_shows_a_matte_body() {
     let seen = |scene: &Scene| {
         let job = Job::new(scene, &settings);
         let primary = job.surroundings.primary(2.0 * normal, -normal).expect("met");
-        job.surroundings.follow(&primary, &job.spectrum[job.spectrum.len() / 2].optics).radiance
+        job.surroundings.follow(&primary, &job.spectrum[job.spectrum.len() / 2].optics, &mut generator(1, 0)).radiance
     };
     let index = scene.objects[0].material.index_at(550.0);
     let reflectance = ((index - 1.0) / (index + 1.0)).powi(2);

@@ -2,11 +2,14 @@
 
 use super::geometry::{Bodies, Way};
 use super::hit::{Hit, Place};
+use super::rough;
 use super::within::{Order, Within};
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;
 use lapidary_scene::{Environment, Light};
+use rand::RngExt as _;
+use rand::rngs::Xoshiro256PlusPlus;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
@@ -28,14 +31,24 @@ pub(super) struct Optics {
     pub(super) base_color: DVec3,
 }
 
+/// Properties of a body's surface at every wavelength.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    /// Whether it is a thin wall: clear, without an inside.
+    pub(super) is_thin: bool,
+    /// Width of its facets' slopes; 0 if it is polished.
+    pub(super) alpha: f64,
+    /// Share of the light that comes from outside, and is not reflected, that enters.
+    pub(super) clear: f64,
+}
+
 /// The surroundings of a ray, whatever its wavelength.
 pub(super) struct Surroundings<'scene> {
     pub(super) bodies: Bodies,
     pub(super) order: Order,
     /// Lights whose discs are seen, with their radii: of a sun the sine of the angle.
     pub(super) lights: Vec<(Light, f64)>,
-    /// For each body whether it is a thin wall: clear, without an inside.
-    pub(super) thin: Vec<bool>,
+    pub(super) surfaces: Vec<Surface>,
     /// The clear bodies around the eye.
     pub(super) around_eye: Within,
     pub(super) environment: &'scene Environment,
@@ -54,10 +67,10 @@ pub(super) struct Outcome {
 
 /// A camera ray up to its first surface, which does not depend on the wavelength.
 pub(super) enum Primary {
-    /// The ray meets a clear body.
+    /// The ray meets a polished clear body.
     Clear(Entry),
-    /// The ray begins within clear bodies.
-    Within(Ray),
+    /// The ray meets a rough or partly clear body, or begins within clear ones: it is followed from the eye on.
+    FromEye(Ray),
     /// The ray meets a matte body, which sends this radiance.
     Matte(DVec3),
 }
@@ -89,8 +102,9 @@ struct Arrival {
     normal: DVec3,
     /// Unit normal that reflects and refracts: interpolated on a smooth body, unless it faces away.
     shading: DVec3,
-    /// Whether the surface is a thin wall.
-    thin: bool,
+    surface: Surface,
+    /// Whether it comes from outside the body.
+    enters: bool,
     place: Place,
     /// The bodies before the surface.
     before: Within,
@@ -140,17 +154,26 @@ impl PartialEq for Ray {
 impl Eq for Ray {}
 
 impl Surroundings<'_> {
+    /// Whether light takes one of several ways at some surface.
+    pub(super) fn is_rough(&self) -> bool {
+        self.surfaces.iter().any(|surface| surface.alpha > 0.0)
+    }
+
     /// Finds the first surface that a camera ray meets, of whatever body; `None` if it meets none.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         if !self.around_eye.is_empty() {
             let within = self.around_eye;
-            return Some(Primary::Within(Ray { origin: eye, direction, left: None, within, throughput: DVec3::ONE }));
+            return Some(Primary::FromEye(Ray { origin: eye, direction, left: None, within, throughput: DVec3::ONE }));
         }
         let hit = self.bodies.enter(eye, direction, None)?;
         if let Some(radiance) = self.bodies.sent(&hit, eye + hit.distance * direction) {
             return Some(Primary::Matte(radiance));
         }
         let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
+        let surface = self.surfaces[hit.place.body];
+        if surface.alpha > 0.0 || surface.clear < 1.0 {
+            return Some(Primary::FromEye(ray));
+        }
         let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
         let reflected = arrival.reflected();
         let reflected_radiance = match self.ahead(&arrival.leave(reflected, arrival.before, DVec3::ONE))? {
@@ -187,13 +210,13 @@ impl Surroundings<'_> {
 
     /// Follows `primary` at one wavelength with the bodies' `optics` at that wavelength. The
     /// strongest ray comes first, until all remaining rays together have less energy than the
-    /// bound.
-    pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
+    /// bound. At a rough surface light takes one way, at random.
+    pub(super) fn follow(&self, primary: &Primary, optics: &[Optics], random: &mut Xoshiro256PlusPlus) -> Outcome {
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
         match primary {
             Primary::Matte(radiance) => return Outcome { radiance: *radiance, lost: 0.0 },
-            Primary::Within(ray) => waiting.push(*ray),
+            Primary::FromEye(ray) => waiting.push(*ray),
             Primary::Clear(Entry { arrival, reflected, reflected_radiance }) => {
                 let (reflectance, transmitted) = arrival.split(&self.order, optics);
                 match reflected_radiance {
@@ -214,7 +237,12 @@ impl Surroundings<'_> {
             pending -= ray.energy();
             let Some(arrival) = self.travel(&ray, optics, &mut outcome) else { continue };
             hits += 1;
-            let (reflectance, transmitted) = arrival.split(&self.order, optics);
+            let (reflectance, transmitted) = if arrival.surface.alpha > 0.0 {
+                (0.0, Some(arrival.scatter(&self.order, optics, random)))
+            } else {
+                arrival.split(&self.order, optics)
+            };
+            let transmitted = transmitted.map(|ray| self.part(&arrival, ray, &mut outcome));
             if let Some(ray) = transmitted {
                 pending += ray.energy();
                 waiting.push(ray);
@@ -254,13 +282,24 @@ impl Surroundings<'_> {
         arrival
     }
 
+    /// Takes from a ray that crosses a partly clear surface what does not enter, for which the surface is matt.
+    fn part(&self, arrival: &Arrival, mut ray: Ray, outcome: &mut Outcome) -> Ray {
+        let Arrival { surface, enters, point, .. } = *arrival;
+        let crosses = surface.is_thin || ray.within.matter(&self.order) != arrival.before.matter(&self.order);
+        if surface.clear < 1.0 && enters && crosses {
+            outcome.radiance += ray.throughput * self.bodies.sent_in_part(arrival.place, arrival.normal, point);
+            ray.throughput *= surface.clear;
+        }
+        ray
+    }
+
     /// Returns a ray's arrival at `hit`; `None` if it comes into more bodies than are followed.
     fn arrive(&self, ray: &Ray, hit: Hit, way: Way, throughput: DVec3) -> Option<Arrival> {
         let Ray { origin, direction, within: before, .. } = *ray;
         let point = origin + hit.distance * direction;
-        let thin = self.thin[hit.place.body];
+        let surface = self.surfaces[hit.place.body];
         let (side, behind) = match way {
-            Way::In if thin => (1.0, before),
+            Way::In if surface.is_thin => (1.0, before),
             Way::In => (1.0, before.with(hit.place.body)?),
             Way::Out => (-1.0, before.without(hit.place.body)),
         };
@@ -268,7 +307,8 @@ impl Surroundings<'_> {
         let (point, given) = self.bodies.curved(&hit, point, direction);
         let given = side * given;
         let shading = if given.dot(direction) < 0.0 { given } else { normal };
-        Some(Arrival { point, direction, normal, shading, thin, place: hit.place, before, behind, throughput })
+        let enters = matches!(way, Way::In);
+        Some(Arrival { point, direction, normal, shading, surface, enters, place: hit.place, before, behind, throughput })
     }
 }
 
@@ -287,27 +327,21 @@ impl Arrival {
     /// Returns the reflectance of a thin wall, between whose two interfaces light goes back and forth, and the transmitted
     /// ray.
     fn split_thin(&self, Optics { index, base_color, .. }: Optics) -> (f64, Option<Ray>) {
-        let once = fresnel::dielectric(-self.normal.dot(self.direction), index);
-        let reflectance = 2.0 * once / (1.0 + once);
+        let reflectance = pane(-self.normal.dot(self.direction), index);
         let throughput = self.throughput * base_color * (1.0 - reflectance);
         (reflectance, Some(self.leave(self.direction, self.before, throughput)))
     }
 
-    /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection. A surface with the same
-    /// matter on both sides is not there: all light crosses it straight.
-    fn split(&self, order: &Order, optics: &[Optics]) -> (f64, Option<Ray>) {
-        if self.thin {
-            return self.split_thin(optics[self.place.body]);
-        }
+    /// Returns the ratio of the refractive indices behind the surface and before it, and the ray behind it, which goes straight
+    /// on; no ratio if the same matter is on both sides. Light takes a body's colour once on its way through it: where its ray
+    /// first comes into its matter, or, if the eye is there, leaves it.
+    fn cross(&self, order: &Order, optics: &[Optics]) -> (Option<f64>, Ray) {
         let (mut before, mut behind) = (self.before, self.behind);
         let (from, to) = (before.matter(order), behind.matter(order));
         if from == to {
-            return (0.0, Some(self.leave(self.direction, behind, self.throughput)));
+            return (None, self.leave(self.direction, behind, self.throughput));
         }
         let index = |matter: Option<usize>| matter.map_or(1.0, |body| optics[body].index);
-        let relative_index = index(to) / index(from);
-        // Light takes a body's colour once on its way through it: where its ray first comes into its matter, or, if the eye
-        // is there, leaves it.
         let mut color = DVec3::ONE;
         if let Some(body) = from
             && before.color(body)
@@ -319,6 +353,46 @@ impl Arrival {
         {
             color *= optics[body].base_color;
         }
+        (Some(index(to) / index(from)), self.leave(self.direction, behind, self.throughput * color))
+    }
+
+    /// Returns the one ray that leaves a rough surface, at random.
+    fn scatter(&self, order: &Order, optics: &[Optics], random: &mut Xoshiro256PlusPlus) -> Ray {
+        if self.surface.is_thin {
+            return self.scatter_thin(optics[self.place.body], random);
+        }
+        let (Some(relative_index), through) = self.cross(order, optics) else {
+            return self.cross(order, optics).1;
+        };
+        let (direction, passes) = rough::scatter(random, self.direction, self.shading, self.surface.alpha, relative_index);
+        let direction = self.on_side(direction, passes);
+        if passes { Ray { direction, ..through } } else { self.leave(direction, self.before, self.throughput) }
+    }
+
+    /// Mirrors a direction at the face if it goes to the wrong side of it, by an interpolated normal.
+    fn on_side(&self, direction: DVec3, passes: bool) -> DVec3 {
+        if (direction.dot(self.normal) < 0.0) == passes { direction } else { reflect(direction, self.normal) }
+    }
+
+    /// Returns the one ray that leaves a rough thin wall, at random: one facet reflects it, and what goes through goes as if
+    /// reflected to the other side (`KHR_materials_transmission`).
+    fn scatter_thin(&self, Optics { index, base_color, .. }: Optics, random: &mut Xoshiro256PlusPlus) -> Ray {
+        let facet = rough::facet(random, self.direction, self.shading, self.surface.alpha);
+        let passes = random.random::<f64>() >= pane(-facet.dot(self.direction), index);
+        let reflected = reflect(self.direction, facet);
+        let direction = if passes { reflect(reflected, self.normal) } else { reflected };
+        let color = if passes { base_color } else { DVec3::ONE };
+        self.leave(self.on_side(direction, passes), self.before, self.throughput * color)
+    }
+
+    /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection. A surface with the same
+    /// matter on both sides is not there: all light crosses it straight.
+    fn split(&self, order: &Order, optics: &[Optics]) -> (f64, Option<Ray>) {
+        if self.surface.is_thin {
+            return self.split_thin(optics[self.place.body]);
+        }
+        let (relative_index, through) = self.cross(order, optics);
+        let Some(relative_index) = relative_index else { return (0.0, Some(through)) };
         let cosine = -self.shading.dot(self.direction);
         // Skips the oracle well beyond the critical angle; near it, the oracle decides.
         let squared_sine = (1.0 - cosine) * (1.0 + cosine);
@@ -334,9 +408,15 @@ impl Arrival {
             return (1.0, None);
         }
         let reflectance = fresnel::dielectric(cosine, relative_index);
-        let throughput = self.throughput * color * (1.0 - reflectance);
-        (reflectance, Some(self.leave(refracted.direction, behind, throughput)))
+        let throughput = through.throughput * (1.0 - reflectance);
+        (reflectance, Some(Ray { direction: refracted.direction, throughput, ..through }))
     }
+}
+
+/// Returns the reflectance of two interfaces, between which light goes back and forth.
+fn pane(cosine: f64, index: f64) -> f64 {
+    let once = fresnel::dielectric(cosine, index);
+    2.0 * once / (1.0 + once)
 }
 
 /// Reflects by the vector form of the law of reflection. The oracle's angle form gives the same

@@ -1,8 +1,11 @@
 use super::*;
+use crate::random_walk::generator;
 use crate::spectral::geometry::Geometry;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};
 use lapidary_scene::{Averaging, Material, Object};
+
+const POLISHED: Surface = Surface { is_thin: false, alpha: 0.0, clear: 1.0 };
 
 /// Returns a sky of radiance 1 above and 0 below, with a soft step of one texel in between.
 fn sky() -> Environment {
@@ -34,7 +37,7 @@ fn surroundings<'a>(
         bodies,
         order: Order::of(objects),
         lights: Vec::new(),
-        thin: vec![false; objects.len()],
+        surfaces: vec![POLISHED; objects.len()],
         around_eye,
         environment,
         energy_bound,
@@ -51,7 +54,7 @@ fn outcome(
     let eye = DVec3::new(0.3, 0.0, 0.2) - 3.0 * direction;
     let surroundings = surroundings(std::slice::from_ref(object), environment, geometry, eye, 1e-13);
     let primary = surroundings.primary(eye, direction).expect("met");
-    surroundings.follow(&primary, &[optics])
+    surroundings.follow(&primary, &[optics], &mut generator(1, 0))
 }
 
 fn clear(index: f64) -> Optics {
@@ -115,7 +118,7 @@ fn what_is_dropped_is_counted() {
         let surroundings =
             surroundings(std::slice::from_ref(&object), &environment, Geometry::Planes, eye, energy_bound);
         let primary = surroundings.primary(eye, -DVec3::Y).expect("met");
-        let seen = surroundings.follow(&primary, &[clear(2.41749)]);
+        let seen = surroundings.follow(&primary, &[clear(2.41749)], &mut generator(1, 0));
         let whole = outcome(&object, &environment, Geometry::Planes, clear(2.41749), -DVec3::Y);
         assert!(seen.lost > 0.0 && seen.lost < energy_bound);
         let missing = whole.radiance.x - seen.radiance.x;
@@ -151,7 +154,8 @@ fn the_shortcut_to_total_reflection_agrees_with_the_oracle() {
                 direction: DVec3::new(angle.sin(), -angle.cos(), 0.0),
                 normal: DVec3::Y,
                 shading: DVec3::Y,
-                thin: false,
+                surface: POLISHED,
+                enters: false,
                 place: Place { body: 0, face: 0 },
                 before: Within::default().with(0).expect("room"),
                 behind: Within::default(),

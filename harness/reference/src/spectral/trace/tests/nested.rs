@@ -13,7 +13,7 @@ fn layer(bottom: f64, top: f64) -> Object {
     let around = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|normal| side(normal, 512.0));
     let planes = [around.as_slice(), &[side(DVec3::Z, top), side(-DVec3::Z, -bottom)]].concat();
     let mesh = Polyhedron::from_planes(&planes).unwrap().to_mesh(Averaging::Angle);
-    Object::new("layer", mesh, Material { transmission: 1.0, thickness: 1.0, ..Material::standard() })
+    Object::new("layer", mesh, Material { transmission: 1.0, thickness: 1.0, roughness: 0.0, ..Material::standard() })
 }
 
 fn with_priority(mut object: Object, priority: i32) -> Object {
@@ -25,7 +25,7 @@ fn seen(objects: &[Object], optics: &[Optics], geometry: Geometry, eye: DVec3, d
     let sky = sky();
     let surroundings = surroundings(objects, &sky, geometry, eye, 1e-13);
     let primary = surroundings.primary(eye, direction).expect("met");
-    surroundings.follow(&primary, optics)
+    surroundings.follow(&primary, optics, &mut generator(1, 0))
 }
 
 /// Returns the share of light from above that a pile of layers sends back up, at an angle in the air: each layer's index,
@@ -122,7 +122,7 @@ fn a_ball_within_a_ball_is_magnified_by_its_index() {
             bodies: Bodies::with_mattes(&objects, Geometry::Triangles, mattes),
             order: Order::of(&objects),
             lights: Vec::new(),
-            thin: vec![false; objects.len()],
+            surfaces: vec![POLISHED; objects.len()],
             around_eye: Within::default(),
             environment: &environment,
             energy_bound: 1e-6,
@@ -157,7 +157,7 @@ fn an_eye_within_bodies_sees_out_of_them() {
     for direction in [DVec3::Y, DVec3::new(0.6, 0.0, -0.8), DVec3::new(0.3, -0.9, 0.1).normalize()] {
         let surroundings = surroundings(&objects, &ones, Geometry::Planes, eye, 1e-9);
         let primary = surroundings.primary(eye, direction).expect("within");
-        let seen = surroundings.follow(&primary, &without);
+        let seen = surroundings.follow(&primary, &without, &mut generator(1, 0));
         assert!((seen.radiance / base_color + seen.lost - 1.0).abs().max_element() < 1e-8, "{direction}: {seen:?}");
     }
 }
