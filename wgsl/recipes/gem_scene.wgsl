@@ -3,7 +3,7 @@
 // Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980 (the tree of
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
-// requires: absorption, bvh_trace, cdrf, environment, fresnel, proxy_geometry, refraction
+// requires: absorption, bvh_trace, cdrf, environment, fresnel, microfacet, proxy_geometry, random_walk, refraction
 // parts: surroundings, lights, glints, harmonics, trace_nearest
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
@@ -21,6 +21,10 @@ override EFFECT_BEHIND: bool = false;
 override EFFECT_AROUND: bool = false;
 // The interpolated normal refracts and reflects. Called for by a clear body with smooth normals.
 override EFFECT_SMOOTH: bool = false;
+// Facets at random reflect and refract. Called for by a clear body of a roughness above 0.0316.
+override EFFECT_ROUGH: bool = false;
+// A share of the light does not enter: to it the surface is matt. Called for by a transmission between 0 and 1.
+override EFFECT_PARTIAL_TRANSMISSION: bool = false;
 // Light is absorbed on its way through bodies. Called for by KHR_materials_volume with an attenuation
 // colour below white.
 override EFFECT_ABSORPTION: bool = false;
@@ -28,7 +32,8 @@ override EFFECT_ABSORPTION: bool = false;
 override EFFECT_DISPERSION: bool = false;
 // Light from all around falls on bodies that are not clear.
 override EFFECT_ENVIRONMENT: bool = false;
-// Number of entries of `wavelengths`, each followed by a tree of rays of its own.
+// Number of trees of rays: one for each entry of `wavelengths` if light is dispersed, each with facets of
+// its own if they are rough.
 override WAVELENGTHS: u32 = 1u;
 // Number of surfaces at which light is split, for each wavelength, after the one that the eye sees.
 override BOUNCES: u32 = 16u;
@@ -41,6 +46,8 @@ const SCENE_WAITING = 6u;
 // Cosine of the angle of incidence below which a ray is not followed to the curved surface above a
 // triangle.
 const SCENE_GRAZING = 0.2f;
+// Number of facets of a rough surface after which light leaves as it goes.
+const SCENE_FACETS = 6u;
 // Stands for no body.
 const SCENE_NONE = 0xffffffffu;
 // Values of SceneBody.kind.
@@ -62,6 +69,10 @@ struct SceneBody {
     absorption: vec3f,
     // 0 for a clear body, else SCENE_THIN_WALL or SCENE_OPAQUE.
     kind: u32,
+    // Slope of the surface's facets: the square of glTF's roughness; 0 if it is polished.
+    alpha: f32,
+    // Share of the light that comes from outside, and is not reflected, that enters.
+    clear: f32,
 }
 
 struct SceneStart {
@@ -131,6 +142,10 @@ struct SceneRay {
 var<private> scene_waiting: array<SceneRay, SCENE_WAITING>;
 // Radiance found so far.
 var<private> scene_found: vec3f;
+// Counter of random numbers: the pixel's place, and the surfaces found so far.
+var<private> scene_counter: vec4u;
+// Shift of random numbers for this tree: those of all trees lie evenly (Roberts' sequence in four dimensions).
+var<private> scene_shift: vec4f;
 
 fn scene_strength(ray: SceneRay) -> f32 {
     return max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
@@ -283,26 +298,122 @@ fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
     return 0.318309886f * base_color * irradiance;
 }
 
+// Random numbers, four for each call.
+fn scene_random() -> vec4f {
+    scene_counter.z++;
+    let random = random_walk_random(scene_counter);
+    return min(fract(random + scene_shift), vec4f(0.99999994f));
+}
+
+// Light among the facets of a rough surface.
+struct SceneAmong {
+    direction: vec3f,
+    // 1 on the side from which light came, -1 on the other.
+    side: f32,
+    // Share of the surface that lies farther from that side's outside; 1 outside.
+    below: f32,
+}
+
+// Share of the surface below the next facet that light meets, at random; above 1 if it meets none. Smith's
+// lambda is the mean number of facets that light on its way out meets from the lowest point on; light on its
+// way in meets one for certain.
+fn scene_below(cosine: f32, below: f32, alpha: f32, u: f32) -> f32 {
+    let c = max(abs(cosine), 1e-6f);
+    let sine_squared = max((1.0f - c) * (1.0f + c), 0.0f);
+    let stretched = sqrt(alpha * alpha * sine_squared + c * c);
+    let lambda = alpha * alpha * sine_squared / (2.0f * c * (stretched + c));
+    let depth = -log2(1.0f - u);
+    if (cosine < 0.0f) {
+        return below * exp2(-depth / (1.0f + lambda));
+    }
+    return below * exp2(min(depth / max(lambda, 1e-6f), 64.0f));
+}
+
+// Follows light from facet to facet until it leaves them: its direction, and 1 or -1 for the side.
+fn scene_leave(
+    start: SceneAmong, normal: vec3f, alpha: f32, relative_index: f32, first: vec4f
+) -> vec4f {
+    var among = start;
+    var random = first;
+    for (var facets = 1u; facets < SCENE_FACETS; facets++) {
+        let up = among.side * normal;
+        let below = scene_below(dot(up, among.direction), among.below, alpha, random.x);
+        if (below >= 1.0f) {
+            break;
+        }
+        among.below = below;
+        let facet = microfacet_facet(up, -among.direction, alpha, random.y, random_walk_azimuth(random.z));
+        let index = select(1.0f / relative_index, relative_index, among.side > 0.0f);
+        let refracted = refraction_refract(among.direction, facet, index);
+        let crosses = !refracted.total && random.w >= fresnel_dielectric(-dot(among.direction, facet), index);
+        among.direction = select(refraction_reflect(among.direction, facet), refracted.direction, crosses);
+        among.side = select(among.side, -among.side, crosses);
+        among.below = select(below, 1.0f - below, crosses);
+        random = scene_random();
+    }
+    return vec4f(among.direction, among.side);
+}
+
+// Turns a direction to a side of a surface, by a mirror in its plane.
+fn scene_turn(direction: vec3f, facing: vec3f, side: f32) -> vec3f {
+    let along = dot(direction, facing);
+    return direction - (along - side * abs(along)) * facing;
+}
+
 // The two rays that leave a surface.
 struct SceneSplit {
     reflected: vec3f,
     refracted: vec3f,
     // Share of light that is reflected.
     reflectance: f32,
+    // Whether each of the two stays on the ray's side: between rough facets light may change it.
+    stay: vec2<bool>,
+}
+
+// Splits light at the first facet of a rough surface that it meets. What is reflected there and what is
+// refracted may meet more facets, at which each takes one way at random.
+fn scene_split_rough(
+    direction: vec3f, facing: vec3f, normal: vec3f, relative_index: f32, alpha: f32
+) -> SceneSplit {
+    let random = scene_random();
+    let below = scene_below(dot(direction, normal), 1.0f, alpha, random.x);
+    let facet = microfacet_facet(normal, -direction, alpha, random.y, random_walk_azimuth(random.z));
+    let refracted = refraction_refract(direction, facet, relative_index);
+    let next = scene_random();
+    let back = SceneAmong(refraction_reflect(direction, facet), 1.0f, below);
+    let reflected = scene_leave(back, normal, alpha, relative_index, next);
+    var split = SceneSplit(scene_turn(reflected.xyz, facing, reflected.w), direction, 1.0f, vec2<bool>(true, false));
+    split.stay.x = reflected.w > 0.0f;
+    if (!refracted.total) {
+        let through = SceneAmong(refracted.direction, -1.0f, 1.0f - below);
+        let crossed = scene_leave(through, normal, alpha, relative_index, next.yxwz);
+        split.reflectance = fresnel_dielectric(-dot(direction, facet), relative_index);
+        split.refracted = scene_turn(crossed.xyz, facing, crossed.w);
+        split.stay.y = crossed.w > 0.0f;
+    }
+    return split;
 }
 
 // `facing` is the normal of the triangle's plane on the ray's side, `smooth_normal` the one that
 // reflects and refracts. Where that would send light to the wrong side of the triangle, or faces away,
 // the triangle's plane stands in. What one normal does not reflect, it refracts: no light is lost.
-fn scene_split(direction: vec3f, facing: vec3f, smooth_normal: vec3f, relative_index: f32) -> SceneSplit {
+fn scene_split(
+    direction: vec3f, facing: vec3f, smooth_normal: vec3f, relative_index: f32, alpha: f32
+) -> SceneSplit {
     var normal = facing;
     if (EFFECT_SMOOTH) {
         if (dot(smooth_normal, direction) < 0.0f) {
             normal = smooth_normal;
         }
     }
+    if (EFFECT_ROUGH) {
+        if (alpha > 0.0f) {
+            return scene_split_rough(direction, facing, normal, relative_index, alpha);
+        }
+    }
     let refracted = refraction_refract(direction, normal, relative_index);
-    var split = SceneSplit(refraction_reflect(direction, normal), refracted.direction, 1.0f);
+    let stay = vec2<bool>(true, false);
+    var split = SceneSplit(refraction_reflect(direction, normal), refracted.direction, 1.0f, stay);
     if (!refracted.total) {
         split.reflectance = fresnel_dielectric(-dot(direction, normal), relative_index);
     }
@@ -359,14 +470,32 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
                 behind = select(scene_without(ray.within, number), scene_with(ray.within, number), enters);
             }
         }
-        var split = SceneSplit(ray.direction, ray.direction, 0.0f);
+        var split = SceneSplit(ray.direction, ray.direction, 0.0f, vec2<bool>(true, false));
         var color = vec3f(1.0f);
+        var is_surface = false;
         if (body.kind == SCENE_THIN_WALL) {
-            split.reflected = refraction_reflect(ray.direction, facing);
+            var normal = facing;
+            if (EFFECT_ROUGH) {
+                if (body.alpha > 0.0f) {
+                    let random = scene_random();
+                    normal = microfacet_facet(
+                        facing, -ray.direction, body.alpha, random.x, random_walk_azimuth(random.y)
+                    );
+                }
+            }
+            split.reflected = refraction_reflect(ray.direction, normal);
+            if (EFFECT_ROUGH) {
+                if (body.alpha > 0.0f) {
+                    // What goes through is turned as what is reflected, on the other side.
+                    split.refracted = select(ray.direction, scene_turn(split.reflected, facing, -1.0f), enters);
+                    split.reflected = scene_turn(split.reflected, facing, 1.0f);
+                }
+            }
             // Light goes back and forth between the wall's two interfaces. Its back is not there.
-            let once = select(0.0f, fresnel_dielectric(-dot(ray.direction, facing), body.index), enters);
+            let once = select(0.0f, fresnel_dielectric(-dot(ray.direction, normal), body.index), enters);
             split.reflectance = 2.0f * once / (1.0f + once);
             color = select(vec3f(1.0f), body.base_color, enters);
+            is_surface = enters;
         } else if ((behind.x >> 1u) != (ray.within.x >> 1u)) {
             // Otherwise there is the same matter on both sides, and no surface.
             var smooth_normal = facing;
@@ -377,7 +506,8 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
                 smooth_normal = select(-smooth_normal, smooth_normal, enters);
             }
             let relative_index = scene_index(behind, wavelength) / scene_index(ray.within, wavelength);
-            split = scene_split(ray.direction, facing, smooth_normal, relative_index);
+            split = scene_split(ray.direction, facing, smooth_normal, relative_index, body.alpha);
+            is_surface = enters;
             color = scene_color(ray.within) * scene_color(behind);
             behind = scene_colored(behind);
         }
@@ -386,9 +516,32 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         reflected.throughput *= split.reflectance;
         // Of two surfaces in one place, light that goes back at the second crosses the first again.
         reflected.left.y = BVH_TRACE_NONE;
-        scene_wait(reflected);
         ray.direction = split.refracted;
-        ray.throughput *= (1.0f - split.reflectance) * color;
+        ray.throughput *= 1.0f - split.reflectance;
+        if (EFFECT_ROUGH) {
+            if (!split.stay.x) {
+                reflected.throughput *= color;
+                reflected.within = behind;
+            }
+            if (split.stay.y) {
+                color = vec3f(1.0f);
+                behind = ray.within;
+            }
+        }
+        ray.throughput *= color;
+        if (EFFECT_PARTIAL_TRANSMISSION) {
+            if (is_surface && body.clear < 1.0f) {
+                var entering = ray.throughput;
+                if (EFFECT_ROUGH) {
+                    entering = f32(!split.stay.y) * ray.throughput + f32(!split.stay.x) * reflected.throughput;
+                    reflected.throughput *= select(body.clear, 1.0f, split.stay.x);
+                }
+                let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
+                scene_found += (1.0f - body.clear) * entering * scene_sent(vec3f(1.0f), ray.position, normal);
+                ray.throughput *= select(body.clear, 1.0f, split.stay.y);
+            }
+        }
+        scene_wait(reflected);
         ray.within = behind;
         scene_wait(ray);
     }
@@ -438,15 +591,32 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
     return scene_found;
 }
 
+// Sets the random numbers of a tree of rays.
+fn scene_start_tree(input: GemVertex, tree: u32) {
+    if (EFFECT_ROUGH) {
+        scene_counter = vec4u(vec2u(input.clip.xy), 0u, 0u);
+        scene_shift = f32(tree) * vec4f(0.8566749f, 0.7338919f, 0.6287067f, 0.5385973f);
+    }
+}
+
 // Radiance that the body sends to the eye, linear, with an alpha of 1.
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     if (EFFECT_DISPERSION) {
         var radiance = vec3f(0.0f);
         for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
+            scene_start_tree(input, wavelength);
             radiance += wavelengths[wavelength].weights * scene_radiance(input, wavelength);
         }
         return vec4f(radiance, 1.0f);
+    }
+    if (EFFECT_ROUGH) {
+        var radiance = vec3f(0.0f);
+        for (var tree = 0u; tree < WAVELENGTHS; tree++) {
+            scene_start_tree(input, tree);
+            radiance += scene_radiance(input, 0u);
+        }
+        return vec4f(radiance / f32(WAVELENGTHS), 1.0f);
     }
     return vec4f(scene_radiance(input, 0u), 1.0f);
 }

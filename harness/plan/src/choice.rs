@@ -61,6 +61,12 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if inside && has(Effect::Smooth) && among::is_smooth(object) {
         return Some("its normals are those of a smooth surface".to_owned());
     }
+    if has(Effect::Rough) && object.material.facet_slope() > 0.0 {
+        return Some(format!("roughness {}", short(object.material.roughness)));
+    }
+    if has(Effect::PartialTransmission) && object.material.clear_share() < 1.0 {
+        return Some("a share of the light does not enter".to_owned());
+    }
     // Asked for what light meets, a user has chosen another way.
     if request.outside.is_some() {
         return None;

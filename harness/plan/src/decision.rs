@@ -139,13 +139,15 @@ impl Case<'_> {
             Effect::ScreenTrace => self.screen_trace(),
             Effect::BoundsTrace => self.bounds_trace(),
             // Others need not be measured for them.
-            Effect::Nested | Effect::Behind | Effect::Around | Effect::Smooth | Effect::Light if !self.is_gem() => {
+            Effect::Nested | Effect::Behind | Effect::Around | Effect::Smooth | Effect::Rough | Effect::Light
+                if !self.is_gem() => {
                 off(self.not_clear())
             }
             Effect::Nested => self.nested(),
             Effect::Behind => self.behind(),
             Effect::Around => self.around(),
             Effect::Smooth => self.smooth(),
+            Effect::Rough => self.rough(),
             Effect::Light => self.light(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
@@ -262,6 +264,18 @@ impl Case<'_> {
                 self.among(Some(format!("the normals of {} are those of a smooth surface", object.name)), "")
             }
             None => self.among(None, among::why_flat(self.object)),
+        }
+    }
+
+    fn rough(&self) -> Answer {
+        let clear = self.scene.objects.iter().filter(|_| self.is_among());
+        let found = std::iter::once(self.object).chain(clear).find(|object| object.material.facet_slope() > 0.0);
+        match found {
+            Some(object) if self.is_among() => {
+                on(format!("roughness {} of {}", short(object.material.roughness), object.name))
+            }
+            Some(_) => off(format!("the rung {} draws clear bodies polished", self.rung)),
+            None => off("clear bodies are polished"),
         }
     }
 
@@ -648,6 +662,8 @@ impl Case<'_> {
     fn environment(&self) -> Answer {
         if self.is_among() && self.scene.beside_stones().count() > 0 {
             on("light around falls on bodies that it shows")
+        } else if self.is_among() && self.partial_transmission().0 {
+            on("light around falls on what is matt in part")
         } else if self.is_gem() {
             off("a clear surface sends nothing back diffusely")
         } else {
@@ -700,7 +716,15 @@ impl Case<'_> {
 
     fn partial_transmission(&self) -> Answer {
         if self.is_gem() {
-            return off("clear bodies are drawn wholly clear");
+            let clear = self.scene.objects.iter().filter(|_| self.is_among());
+            let partly = |object: &&Object| object.material.is_clear() && object.material.clear_share() < 1.0;
+            return match std::iter::once(self.object).chain(clear).find(partly) {
+                Some(object) if self.is_among() => {
+                    on(format!("transmissionFactor {} of {}", short(object.material.transmission), object.name))
+                }
+                Some(_) => off(format!("the rung {} draws clear bodies wholly clear", self.rung)),
+                None => off("clear bodies are wholly clear"),
+            };
         }
         let share = self.material.share_that_enters();
         let image = self.image(TextureSlot::DiffuseTransmission);

@@ -67,6 +67,8 @@ effects! {
     Around = "around", "EFFECT_AROUND";
     /// Normals between a triangle's corners that reflect and refract in a clear body.
     Smooth = "smooth", "EFFECT_SMOOTH";
+    /// Facets of a clear body's rough surface that reflect and refract, at random.
+    Rough = "rough", "EFFECT_ROUGH";
     /// Discs of suns and lamps, which light that leaves a clear body comes from.
     Light = "light", "EFFECT_LIGHT";
     /// Subsurface light from the lit side to the dark side, by curvature.
@@ -105,7 +107,7 @@ effects! {
     NormalTexture = "normal_texture", "EFFECT_NORMAL_TEXTURE";
     /// Spread of light that varies over the surface, by an image.
     ThicknessTexture = "thickness_texture", "EFFECT_THICKNESS_TEXTURE";
-    /// Light that does not enter a scattering body, and is reflected as by an opaque one.
+    /// Light that does not enter a body, and is reflected as by an opaque one.
     PartialTransmission = "partial_transmission", "EFFECT_PARTIAL_TRANSMISSION";
     /// Share of the light that enters, which varies over the surface by an image.
     TransmissionTexture = "transmission_texture", "EFFECT_TRANSMISSION_TEXTURE";

@@ -97,13 +97,13 @@ impl Case<'_> {
         notes
     }
 
-    /// Returns a note if a clear body is rough or not wholly clear, which no rung draws.
+    /// Returns a note if a clear body is rough or not wholly clear, and its rung does not draw that.
     fn polished(&self, objects: &Objects) -> Option<Note> {
         let material = &self.object.material;
-        let rough = (material.roughness > 0.0).then_some("roughnessFactor");
-        let partly = (material.transmission < 1.0).then_some("transmissionFactor");
+        let rough = (material.facet_slope() > 0.0).then_some("roughnessFactor");
+        let partly = (material.clear_share() < 1.0).then_some("transmissionFactor");
         let what: Vec<&'static str> = rough.into_iter().chain(partly).collect();
-        let drawn = matches!(self.rung, Rung::Inside { .. } | Rung::Surface | Rung::Reference);
+        let drawn = matches!(self.rung, Rung::Inside { .. } | Rung::Surface) && !self.rung.is_among();
         (material.is_clear() && drawn && !what.is_empty()).then(|| Note::PolishedAndClear {
             objects: objects.clone(),
             rung: self.rung,

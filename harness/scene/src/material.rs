@@ -1,7 +1,7 @@
 //! Materials: those of glTF, with a few extensions.
 
 use super::normals::Normals;
-use super::{Medium, Solver, Texture, TextureSlot};
+use super::{Medium, Mesh, Solver, Texture, TextureSlot};
 use glam::Vec3;
 use lapidary_dispersion::{channels, oracle as dispersion};
 
@@ -268,6 +268,12 @@ impl Material {
     #[must_use]
     pub fn facet_slope(&self) -> f32 {
         if self.is_clear() && self.roughness > Self::POLISHED { self.roughness * self.roughness } else { 0.0 }
+    }
+
+    /// Whether the normals between a triangle's corners reflect and refract in a clear body.
+    #[must_use]
+    pub fn is_smooth(&self, mesh: &Mesh) -> bool {
+        self.is_clear() && !self.is_thin_wall() && self.normals.are_smooth(mesh)
     }
 
     /// Returns the share of the light that comes to the surface, and is not reflected, that enters: 0 for an opaque body, 1

@@ -54,11 +54,7 @@ impl Bodies {
 
     /// Matte and smooth bodies are always met by their triangles, whose corners have the normals.
     pub(super) fn with_mattes(objects: &[Object], geometry: Geometry, mattes: Mattes) -> Self {
-        let is_smooth = |object: &Object| {
-            object.material.is_clear()
-                && !object.material.is_thin_wall()
-                && object.material.normals.are_smooth(&object.mesh)
-        };
+        let is_smooth = |object: &Object| object.material.is_smooth(&object.mesh);
         let smooth = objects.iter().map(|object| is_smooth(object).then(|| faces(&object.mesh))).collect();
         Self::with_faces(objects, geometry, mattes, smooth)
     }
@@ -124,6 +120,11 @@ impl Bodies {
     /// Returns the radiance that the matte share of a partly clear surface adds; `flat` is the face's normal.
     pub(super) fn sent_in_part(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
         self.mattes.sent_in_part(place, flat, point)
+    }
+
+    /// Whether a body's surface is curved between the corners of its faces.
+    pub(super) fn is_smooth(&self, body: usize) -> bool {
+        matches!(self.smooth.get(body), Some(Some(_)))
     }
 
     /// Returns where a ray that comes to `hit` at `point` meets the body's surface, and the outward unit normal that reflects

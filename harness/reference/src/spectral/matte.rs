@@ -24,7 +24,8 @@ pub(super) struct Mattes {
 struct Matte {
     /// Share of the light that does not enter, 1 for an opaque body.
     share: f64,
-    /// Factor from irradiance to radiance: the base colour / π.
+    /// Factor from irradiance to radiance: the base colour / π; of a partly clear body, whose light has taken its colour as it
+    /// came in, 1 / π.
     reflectance: DVec3,
     /// Numbered like the body's triangles.
     faces: Vec<Face>,
@@ -74,10 +75,10 @@ impl Mattes {
 
 impl Matte {
     fn new(object: &Object) -> Self {
-        Self {
-            share: 1.0 - f64::from(object.material.clear_share()),
-            reflectance: object.material.base_color.as_dvec3() / PI,
-            faces: faces(&object.mesh),
-        }
+        let material = &object.material;
+        let color = if material.is_clear() { DVec3::ONE } else { material.base_color.as_dvec3() };
+        let is_flat = material.is_clear() && !material.is_smooth(&object.mesh);
+        let faces = if is_flat { Vec::new() } else { faces(&object.mesh) };
+        Self { share: 1.0 - f64::from(material.clear_share()), reflectance: color / PI, faces }
     }
 }

@@ -19,6 +19,10 @@ use std::f64::consts::PI;
 /// lost.
 const MOST_HITS: u32 = 20_000;
 
+/// Number of hits of a sample and wavelength after which a ray that meets a polished surface goes one way, at random, if any
+/// body is rough.
+const MOST_SPLIT: u32 = 32;
+
 /// Optical properties of a body at one wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Optics {
@@ -229,6 +233,7 @@ impl Surroundings<'_> {
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
         // The strongest ray, if known without asking the heap: usually one under total reflection.
         let mut strongest: Option<Ray> = None;
+        let is_rough = self.is_rough();
         let mut hits = 1;
         while pending >= self.energy_bound
             && hits < MOST_HITS
@@ -241,6 +246,15 @@ impl Surroundings<'_> {
                 (0.0, Some(arrival.scatter(&self.order, optics, random)))
             } else {
                 arrival.split(&self.order, optics)
+            };
+            // The many rays of a tree would wander between rough surfaces one by one.
+            let (reflectance, transmitted) = match transmitted {
+                Some(ray) if is_rough && hits > MOST_SPLIT && reflectance > 0.0 => {
+                    let reflects = random.random::<f64>() < reflectance;
+                    let whole = Ray { throughput: ray.throughput / (1.0 - reflectance), ..ray };
+                    if reflects { (1.0, None) } else { (0.0, Some(whole)) }
+                }
+                transmitted => (reflectance, transmitted),
             };
             let transmitted = transmitted.map(|ray| self.part(&arrival, ray, &mut outcome));
             if let Some(ray) = transmitted {
@@ -264,16 +278,26 @@ impl Surroundings<'_> {
     /// body or of the environment ahead is added to `outcome`. The ray is lost if it is within a body
     /// whose surface has a gap there, or comes into more bodies than are followed.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
+        let (mut ray, mut ahead) = (*ray, self.ahead(ray));
+        // A ray that started on a curved surface, above the face, may have passed the body's edge: it is outside.
+        if ahead.is_none() {
+            let smooth = ray.within.bodies().filter(|body| self.bodies.is_smooth(*body));
+            let outside = smooth.fold(ray.within, |within, body| within.without(body));
+            if outside != ray.within {
+                ray.within = outside;
+                ahead = self.ahead(&ray);
+            }
+        }
         let through = |distance: f64| {
             let matter = ray.within.matter(&self.order);
             ray.throughput * matter.map_or(DVec3::ONE, |body| (-distance * optics[body].absorption).exp())
         };
-        let arrival = match self.ahead(ray) {
+        let arrival = match ahead {
             Some(Ahead::Light(radiance, distance)) => {
                 outcome.radiance += through(distance) * radiance;
                 return None;
             }
-            Some(Ahead::Surface(hit, way)) => self.arrive(ray, hit, way, through(hit.distance)),
+            Some(Ahead::Surface(hit, way)) => self.arrive(&ray, hit, way, through(hit.distance)),
             None => None,
         };
         if arrival.is_none() {

@@ -172,7 +172,8 @@ fn record(material: &Material) -> Record {
     };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
     let record = Record::new("SceneBody").with("base_color", material.base_color).with("index", material.ior);
-    record.with("absorption", absorption).with("kind", kind)
+    let record = record.with("absorption", absorption).with("kind", kind);
+    record.with("alpha", material.facet_slope()).with("clear", material.clear_share())
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.

@@ -16,6 +16,7 @@ use lapidary_scene::Scene;
 fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'static str, f64)> {
     let flag = |on: bool| f64::from(u8::from(on));
     let (form, wavelengths) = match rung.spectrum() {
+        Spectrum::One if rung.geometry() == Geometry::Scene => (1, 1),
         Spectrum::One | Spectrum::Tracker => (1, 3),
         Spectrum::Paper => (0, 3),
         Spectrum::Split => (3, 3),

@@ -11,6 +11,8 @@ use lapidary_scene::{Camera, Environment, Light, Material, Mesh, Object, Scene};
 use lapidary_testing::gpu;
 use std::f64::consts::PI;
 
+mod rough;
+
 const SIDE: u32 = 48;
 
 fn of_rung(rung: &str) -> Settings {

@@ -195,12 +195,6 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
             "light that goes straight through is not drawn",
         );
     }
-    if is_share(transmission) {
-        note("transmission", "`transmissionFactor` between 0 and 1", "drawn wholly clear");
-    }
-    if transmission > 0.0 && material.roughness > 0.0 {
-        note("transmission", "`roughnessFactor` above 0", "drawn polished");
-    }
     // In a wholly clear body all light passes straight through, and glTF applies that first.
     let diffuse = "diffuse transmission";
     if diffuse_transmission > 0.0 && is_share(transmission) {
