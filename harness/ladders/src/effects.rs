@@ -116,6 +116,10 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         let rung: Rung = rung.parse().unwrap_or(Rung::ByMaterial);
         Settings { samples: 1, rung, environment: sky(), ..Settings::of_size(frame[0], frame[1]) }
     };
+    let mut frosted = one("ruby")?;
+    for object in &mut frosted.objects {
+        (object.material.roughness, object.material.transmission) = (0.5, 0.8);
+    }
     let mut thin = one("ruby")?;
     for object in &mut thin.objects {
         object.material.thickness = 0.0;
@@ -192,6 +196,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 Effect::Dispersion,
                 Effect::EnvironmentMap,
             ],
+            stands_on: &[],
+        },
+        Case {
+            name: "ruby, frosted, clear in part",
+            scene: frosted,
+            settings: settings("scene-16+3"),
+            effects: &[Effect::Rough, Effect::PartialTransmission, Effect::Absorption, Effect::EnvironmentMap],
             stands_on: &[],
         },
         Case {

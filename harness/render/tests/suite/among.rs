@@ -152,17 +152,22 @@ fn liquid_touches_its_glass_or_overlaps_it_or_leaves_a_gap() {
     assert!(most > 0.2, "{most}");
 }
 
-/// A ball of index 1.5 shows checkers as the closed form does: the two issues of a coarse mesh, its normals
-/// and its places, are mended by the curved surface between its corners.
-#[test]
-fn a_smooth_ball_is_round() {
+/// An environment of black and white squares.
+fn checkers() -> Environment {
     const CHECKER: usize = 32;
     let (width, height) = (512, 256);
     let light = |x: usize, y: usize| if (x / CHECKER + y / CHECKER).is_multiple_of(2) { 1.0 } else { 0.0 };
     let pixels = (0..width * height).map(|place| [light(place % width, place / width); 3]);
     let pixels = pixels.map(|[r, g, b]| [r, g, b, 1.0]).collect();
     let map = EnvironmentMap { width: width as u32, height: height as u32, pixels };
-    let environment = Environment::Map(map);
+    Environment::Map(map)
+}
+
+/// A ball of index 1.5 shows checkers as the closed form does: the two issues of a coarse mesh, its normals
+/// and its places, are mended by the curved surface between its corners.
+#[test]
+fn a_smooth_ball_is_round() {
+    let environment = checkers();
     for (columns, most) in [(24, 0.02), (96, 0.005)] {
         let ball = Object::new("ball", sphere(1.0, columns), glass(1.5));
         let mut settings = Settings { environment: environment.clone(), samples: 1, ..of_rung("by-material") };
@@ -186,6 +191,46 @@ fn a_smooth_ball_is_round() {
             let error = (square / f64::from(count)).sqrt();
             assert!(error <= most, "{columns} columns, {rung}: {error}");
         }
+    }
+}
+
+/// A ball whose top is cut off and polished flat: normals are those of the ball, but on the facet.
+fn drop_with_a_facet() -> Mesh {
+    const COLUMNS: u32 = 32;
+    let round = sphere(0.9, COLUMNS);
+    // Five rings below the pole.
+    let height = 0.9 * (2.0 * 5.0 * std::f32::consts::PI / COLUMNS as f32).cos();
+    let is_cut = |corners: [Vec3; 3]| corners.iter().all(|corner| corner.y > height - 1e-4);
+    let mut mesh = Mesh::default();
+    for triangle in round.indices.chunks_exact(3) {
+        let corners = [0, 1, 2].map(|corner| round.positions[triangle[corner] as usize]);
+        for (position, index) in corners.into_iter().zip(triangle) {
+            mesh.indices.push(mesh.positions.len() as u32);
+            mesh.positions.push(Vec3 { y: position.y.min(height), ..position });
+            mesh.normals.push(if is_cut(corners) { Vec3::Y } else { round.normals[*index as usize] });
+        }
+    }
+    mesh
+}
+
+/// Smooth bodies that are no balls: what refracts by interpolated normals does so in the reference too, and a
+/// facet with a hard edge stays flat.
+#[test]
+fn smooth_bodies_are_as_the_reference_shows_them() {
+    let mut egg = sphere(0.6, 48);
+    for (position, normal) in egg.positions.iter_mut().zip(&mut egg.normals) {
+        let stretch = Vec3::new(1.4, 0.8, 1.0);
+        (*position, *normal) = (*position * stretch, (*normal / stretch).normalize());
+    }
+    let turn = DQuat::from_rotation_x(0.9);
+    for (name, mesh) in [("ellipsoid", egg), ("torus", torus(0.6, 0.3, 48, 24)), ("drop", drop_with_a_facet())] {
+        let body = Object::new(name, mesh.placed(turn, DVec3::ZERO), glass(1.5));
+        assert!(lapidary_plan::is_smooth(&body), "{name}");
+        let scene = scene(vec![body]);
+        let settings = |rung| Settings { environment: checkers(), samples: 1, ..of_rung(rung) };
+        let [seen, truth] = ["scene-64", "reference"].map(|rung| drawn(&scene, &settings(rung)));
+        let (error, most) = difference(&seen, &truth, 50);
+        assert!(error < 0.02 && most < 0.01, "{name}: {error} {most}");
     }
 }
 

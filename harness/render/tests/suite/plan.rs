@@ -236,6 +236,8 @@ fn cases() -> Vec<Case> {
     let clear = Scene { objects: pearl.objects[..2].to_vec(), ..pearl.clone() };
     let mut round = one("octahedron");
     round.objects[0].mesh = lapidary_scene::surfaces::sphere(1.0, 24);
+    let mut frosted = one("octahedron");
+    frosted.objects[0].material.roughness = 0.5;
     let sun = Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE };
     let lit = Scene { lights: vec![sun], ..one("brilliant") };
     let tiled = || of_rung("tiled-6-16");
@@ -280,6 +282,7 @@ fn cases() -> Vec<Case> {
         case(Effect::Behind, clear, of_rung("scene-4"), none()),
         case(Effect::Around, pearl, of_rung("scene-4"), [vec!["corner normals"], vec![], vec![]]),
         case(Effect::Smooth, round, of_rung("scene-4"), [vec!["corner normals"], vec![], vec![]]),
+        case(Effect::Rough, frosted, of_rung("scene-4"), none()),
         case(Effect::Light, lit, settings(), [vec!["lights", "glints"], vec![], vec![]]),
         case(
             Effect::Cdrf,
