@@ -29,6 +29,9 @@ override EFFECT_SECOND_LOBE: bool = false;
 // Some of the light does not enter, and leaves the surface as Lambert's law says. Called for by a
 // diffuseTransmissionFactor between 0 and 1, or a diffuseTransmissionTexture, on a body that cdrf draws.
 override EFFECT_PARTIAL_TRANSMISSION: bool = false;
+// The surface covers a share of what is behind it, or only some of its points do. Called for by an
+// alphaMode of MASK or BLEND.
+override EFFECT_COVERAGE: bool = false;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
 // texture_irradiance and blur_texture.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;
@@ -86,6 +89,12 @@ struct CdrfMaterial {
     transmission_place: TexturePlace,
     // Share of the light that enters, 0 to 1.
     transmission: f32,
+    // Share of what is behind that the surface covers, without its image.
+    coverage: f32,
+    // The share from which on a point covers; below 0 if a share of the samples covers.
+    cutoff: f32,
+    // 0 to 1, another one for each body: which samples cover.
+    shift: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -570,6 +579,17 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
     return sum;
 }
 
+// The coverage above which a sample is drawn: the cutoff, or one of 16 evenly spaced shares, each once in
+// 4 x 4 neighbouring samples (Bayer's matrix), so that bodies need no order.
+fn cdrf_threshold(place: vec2u) -> f32 {
+    if (material.cutoff >= 0.0f) {
+        return material.cutoff;
+    }
+    let across = place.x ^ place.y;
+    let rank = 8u * (across & 1u) + 4u * (place.y & 1u) + 2u * ((across >> 1u) & 1u) + ((place.y >> 1u) & 1u);
+    return fract((f32(rank) + 0.5f) / 16.0f + material.shift);
+}
+
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let surface = cdrf_surface(input);
@@ -583,8 +603,11 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
         received = cdrf_received(input, surface, normals, toward_eye);
     }  //+texture_diffusion
     var base_color = material.base_color;
+    var coverage = material.coverage;
     if (EFFECT_BASE_COLOR_TEXTURE) {
-        base_color *= textureSample(base_color_texture, base_color_sampler, input.base_color_uv).rgb;
+        let texel = textureSample(base_color_texture, base_color_sampler, input.base_color_uv);
+        base_color *= texel.rgb;
+        coverage *= texel.a;
     }
     if (EFFECT_VERTEX_COLOR) {
         base_color *= input.color;
@@ -597,6 +620,11 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
             radiance += cdrf_highlights(input.position, normals, toward_eye);
+        }
+    }
+    if (EFFECT_COVERAGE) {
+        if (coverage < cdrf_threshold(vec2u(input.clip.xy))) {
+            discard;
         }
     }
     return vec4f(radiance, 1.0f);

@@ -25,6 +25,9 @@ override EFFECT_SMOOTH: bool = false;
 override EFFECT_ROUGH: bool = false;
 // A share of the light does not enter: to it the surface is matt. Called for by a transmission between 0 and 1.
 override EFFECT_PARTIAL_TRANSMISSION: bool = false;
+// Opaque bodies cover a share of what is behind them. Called for by an alphaMode of MASK or BLEND of one of
+// them.
+override EFFECT_COVERAGE: bool = false;
 // Light is absorbed on its way through bodies. Called for by KHR_materials_volume with an attenuation
 // colour below white.
 override EFFECT_ABSORPTION: bool = false;
@@ -71,7 +74,8 @@ struct SceneBody {
     kind: u32,
     // Slope of the surface's facets: the square of glTF's roughness; 0 if it is polished.
     alpha: f32,
-    // Share of the light that comes from outside, and is not reflected, that enters.
+    // Share of the light that comes from outside, and is not reflected, that enters; of an opaque body, the
+    // share that it does not cover.
     clear: f32,
 }
 
@@ -458,7 +462,14 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         // Its back is not there.
         if (body.kind == SCENE_OPAQUE && enters) {
             let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
-            scene_found += ray.throughput * scene_sent(body.base_color, ray.position, normal);
+            let sent = scene_sent(body.base_color, ray.position, normal);
+            if (EFFECT_COVERAGE) {
+                scene_found += (1.0f - body.clear) * ray.throughput * sent;
+                ray.throughput *= body.clear;
+                scene_wait(ray);
+            } else {
+                scene_found += ray.throughput * sent;
+            }
             passes = false;
         }
     }

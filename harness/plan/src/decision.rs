@@ -11,7 +11,7 @@ use super::numbers::{short, triple};
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot};
+use lapidary_scene::{Coverage, Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,6 +172,7 @@ impl Case<'_> {
             Effect::PartialTransmission => self.partial_transmission(),
             Effect::TransmissionTexture => self.transmission_texture(),
             Effect::VertexColor => self.vertex_color(),
+            Effect::Coverage => self.coverage(),
             Effect::Microfacet => self.microfacet(),
             Effect::SecondLobe => self.second_lobe(),
             Effect::Reflection => self.reflection(),
@@ -740,6 +741,24 @@ impl Case<'_> {
         let found = self.image(TextureSlot::DiffuseTransmission);
         let missing = self.missing(Effect::PartialTransmission, self.partial_transmission());
         if found.0 { missing.unwrap_or(found) } else { found }
+    }
+
+    fn coverage(&self) -> Answer {
+        if self.is_gem() && self.around().0 {
+            let partly = |object: &&Object| object.material.is_opaque() && object.material.covered_share() < 1.0;
+            return match self.scene.objects.iter().find(partly) {
+                Some(object) => on(format!("{} covers a share of what is behind it", object.name)),
+                None => off("opaque bodies cover all that is behind them"),
+            };
+        }
+        match self.material.coverage {
+            None => off("alphaMode OPAQUE"),
+            Some(_) if self.material.covers_all() => off("alpha covers all"),
+            Some(Coverage { share, cutoff: None }) => self.drawn_by_rung(format!("alphaMode BLEND, alpha {}", short(share))),
+            Some(Coverage { cutoff: Some(cutoff), .. }) => {
+                self.drawn_by_rung(format!("alphaMode MASK, cutoff {}", short(cutoff)))
+            }
+        }
     }
 
     fn vertex_color(&self) -> Answer {

@@ -113,6 +113,8 @@ effects! {
     TransmissionTexture = "transmission_texture", "EFFECT_TRANSMISSION_TEXTURE";
     /// Diffuse colour that varies from vertex to vertex.
     VertexColor = "vertex_color", "EFFECT_VERTEX_COLOR";
+    /// Points that cover what is behind them in part, or not at all: `alphaMode`.
+    Coverage = "coverage", "EFFECT_COVERAGE";
     /// Highlights of the lights on a rough surface.
     Microfacet = "microfacet", "EFFECT_MICROFACET";
     /// A second width of the highlights, mixed with the first.

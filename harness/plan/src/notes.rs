@@ -127,7 +127,8 @@ impl Case<'_> {
             !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
         };
         let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
-        slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).collect()
+        let alpha = (!draws && !material.covers_all()).then_some("alphaMode");
+        slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).chain(alpha).collect()
     }
 
     /// Returns what is wrong with the object's mesh for its rung; `None` if nothing is.

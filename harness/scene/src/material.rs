@@ -20,7 +20,9 @@ pub struct Material {
     /// Base colour factor, linear RGB, each 0 to 1. Light that crosses the surface is multiplied by
     /// it.
     pub base_color: Vec3,
-    /// Factor of the base colour, in red, green and blue.
+    /// How much of what is behind the surface it covers; `None` if all of it.
+    pub coverage: Option<Coverage>,
+    /// Factor of the base colour, in red, green and blue, and of the coverage, in alpha.
     pub base_color_texture: Option<Texture>,
     /// Direction of the surface normal in tangent space, 2 · RGB - 1: x along u, y against v (which
     /// is down), z out of the surface.
@@ -79,6 +81,29 @@ pub struct Material {
     pub solver: Option<Solver>,
 }
 
+/// How much of what is behind a surface it covers: glTF's `alphaMode` MASK and BLEND.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coverage {
+    /// Share of it, 0 to 1, the alpha of the base colour factor.
+    pub share: f32,
+    /// The share from which on a point covers all, and below which it covers nothing, at least 0; `None` to mix.
+    pub cutoff: Option<f32>,
+}
+
+impl Coverage {
+    /// Whether share and cutoff are in range.
+    #[must_use]
+    pub fn is_sound(self) -> bool {
+        (0.0..=1.0).contains(&self.share) && self.cutoff.is_none_or(|cutoff| (0.0..=f32::MAX).contains(&cutoff))
+    }
+
+    /// Returns the share that is covered, without an image.
+    #[must_use]
+    pub fn without_image(self) -> f32 {
+        self.cutoff.map_or(self.share, |cutoff| if self.share >= cutoff { 1.0 } else { 0.0 })
+    }
+}
+
 /// A lobe of a highlight that has two, as skin's has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobe {
@@ -116,6 +141,7 @@ impl Material {
         Self {
             name: "default".to_owned(),
             base_color: Vec3::ONE,
+            coverage: None,
             base_color_texture: None,
             normal_texture: None,
             normal_scale: 1.0,
@@ -180,6 +206,8 @@ impl Material {
             Some("its material's thickness is not finite and at least 0; mend it")
         } else if !(0.0..=1.0).contains(&self.roughness) {
             Some("its material's roughness is not between 0 and 1; mend it")
+        } else if !self.coverage.is_none_or(Coverage::is_sound) {
+            Some("its material's alpha is not between 0 and 1, or its cutoff not at least 0; mend it")
         } else if !self.second_lobe.is_none_or(Lobe::is_sound) {
             Some(
                 "its material's second lobe has a roughness that is not above 0 and at most 1, or a weight that is not between 0 and 1; mend it",
@@ -230,7 +258,7 @@ impl Material {
     #[must_use]
     pub fn calls_for(&self, slot: TextureSlot) -> bool {
         match slot {
-            TextureSlot::BaseColor => self.base_color != Vec3::ZERO,
+            TextureSlot::BaseColor => self.base_color != Vec3::ZERO || self.coverage.is_some(),
             TextureSlot::Normal => self.normal_scale != 0.0,
             TextureSlot::Thickness => self.thickness > 0.0,
             TextureSlot::Transmission => self.transmission > 0.0,
@@ -268,6 +296,19 @@ impl Material {
     #[must_use]
     pub fn facet_slope(&self) -> f32 {
         if self.is_clear() && self.roughness > Self::POLISHED { self.roughness * self.roughness } else { 0.0 }
+    }
+
+    /// Whether the surface covers all that is behind it, by its image too.
+    #[must_use]
+    pub fn covers_all(&self) -> bool {
+        let image = self.base_color_texture.as_ref().is_none_or(|texture| texture.texels.is_opaque());
+        self.coverage.is_none() || self.covered_share() == 1.0 && image
+    }
+
+    /// Returns the share of what is behind the surface that it covers, without an image.
+    #[must_use]
+    pub fn covered_share(&self) -> f32 {
+        self.coverage.map_or(1.0, Coverage::without_image)
     }
 
     /// Whether the normals between a triangle's corners reflect and refract in a clear body.

@@ -1,11 +1,11 @@
 //! Matte bodies: opaque, and of the same radiance seen from all sides. A partly clear body's surface is so for a share of the
-//! light.
+//! light, and so is a body that covers a share of what is behind it.
 
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
 use glam::DVec3;
 use lapidary_scene::harmonics::{self, COUNT};
-use lapidary_scene::{Environment, Light, Object, Scene};
+use lapidary_scene::{Environment, Light, Material, Object, Scene};
 use std::f64::consts::PI;
 
 /// The matte bodies of a scene and the light on them. The default has none.
@@ -34,7 +34,7 @@ struct Matte {
 impl Mattes {
     /// Takes the opaque and partly clear bodies of `scene` as matte, lit by its lights and `environment`.
     pub(super) fn new(scene: &Scene, environment: Option<&Environment>) -> Self {
-        let is_matte = |object: &Object| object.material.clear_share() < 1.0;
+        let is_matte = |object: &Object| share(&object.material) > 0.0;
         if !scene.objects.iter().any(is_matte) {
             return Self::default();
         }
@@ -45,9 +45,9 @@ impl Mattes {
         }
     }
 
-    /// Whether this body is matte.
+    /// Whether the triangles of this body are needed, as it is matte.
     pub(super) fn has(&self, body: usize) -> bool {
-        matches!(self.bodies.get(body), Some(Some(matte)) if matte.share == 1.0)
+        matches!(self.bodies.get(body), Some(Some(matte)) if matte.share == 1.0 || !matte.faces.is_empty())
     }
 
     /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
@@ -73,12 +73,17 @@ impl Mattes {
     }
 }
 
+/// Returns the share of the light for which a surface is matte.
+fn share(material: &Material) -> f64 {
+    f64::from(if material.is_opaque() { material.covered_share() } else { 1.0 - material.clear_share() })
+}
+
 impl Matte {
     fn new(object: &Object) -> Self {
         let material = &object.material;
         let color = if material.is_clear() { DVec3::ONE } else { material.base_color.as_dvec3() };
         let is_flat = material.is_clear() && !material.is_smooth(&object.mesh);
         let faces = if is_flat { Vec::new() } else { faces(&object.mesh) };
-        Self { share: 1.0 - f64::from(material.clear_share()), reflectance: color / PI, faces }
+        Self { share: share(material), reflectance: color / PI, faces }
     }
 }

@@ -402,12 +402,20 @@ fn lights(scene: &Scene) -> Vec<(Light, f64)> {
 fn surface(object: &Object) -> Surface {
     let material = &object.material;
     let alpha = f64::from(material.facet_slope());
-    Surface { is_thin: material.is_thin_wall(), alpha, clear: f64::from(material.clear_share()) }
+    // What an opaque body does not cover, goes straight on, as through a thin wall of index 1.
+    let (is_thin, clear) = match material.is_opaque() {
+        true => (true, 1.0 - material.covered_share()),
+        false => (material.is_thin_wall(), material.clear_share()),
+    };
+    Surface { is_thin, alpha, clear: f64::from(clear) }
 }
 
 /// Returns the optical properties of a body at one wavelength.
 fn optics(object: &Object, wavelength: &Wavelength) -> Optics {
     let material = &object.material;
+    if material.is_opaque() {
+        return Optics { index: 1.0, absorption: DVec3::ZERO, base_color: DVec3::ONE };
+    }
     Optics {
         index: material.index_at(wavelength.nanometres),
         absorption: absorption::coefficient(

@@ -170,10 +170,11 @@ fn record(material: &Material) -> Record {
         _ if material.is_thin_wall() => 1,
         _ => 0,
     };
+    let clear = if material.is_opaque() { 1.0 - material.covered_share() } else { material.clear_share() };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
     let record = Record::new("SceneBody").with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
-    record.with("alpha", material.facet_slope()).with("clear", material.clear_share())
+    record.with("alpha", material.facet_slope()).with("clear", clear)
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.

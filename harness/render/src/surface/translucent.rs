@@ -19,7 +19,7 @@ use glam::{UVec2, Vec2, Vec3};
 use lapidary_plan::{Decisions, Rung, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
 use lapidary_scene::solver::{Format, Reflectance};
-use lapidary_scene::{Lobe, Material, Object, Scene};
+use lapidary_scene::{Coverage, Lobe, Material, Object, Scene};
 
 /// Compiles `source`, the composed recipe, for the effects of each object, and adds the objects.
 pub(crate) fn pass(
@@ -114,7 +114,10 @@ fn add(
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
-    let record = builder.record("material", record_of(material, decisions));
+    // Multiples of the golden ratio lie far from each other.
+    let number = light.0.scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
+    let shift = (number as f32 * 0.618_034).fract();
+    let record = builder.record("material", record_of(material, decisions, shift));
     let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
@@ -159,7 +162,7 @@ fn add(
 }
 
 /// Fills `CdrfMaterial` of the recipe.
-fn record_of(material: &Material, decisions: &Decisions) -> Record {
+fn record_of(material: &Material, decisions: &Decisions, shift: f32) -> Record {
     let sigma0 = safe_sigma0(material);
     let record = Record::new("CdrfMaterial").with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
@@ -175,8 +178,10 @@ fn record_of(material: &Material, decisions: &Decisions) -> Record {
     let record =
         record.within("thickness_place", |record| textures::place(record, material.thickness_texture.as_ref()));
     let record = record.with("transmission", material.share_that_enters());
-    record
-        .within("transmission_place", |record| textures::place(record, material.diffuse_transmission_texture.as_ref()))
+    let record = record
+        .within("transmission_place", |record| textures::place(record, material.diffuse_transmission_texture.as_ref()));
+    let Coverage { share, cutoff } = material.coverage.unwrap_or(Coverage { share: 1.0, cutoff: None });
+    record.with("coverage", share).with("cutoff", cutoff.unwrap_or(-1.0)).with("shift", shift)
 }
 
 /// Returns the material's widths, made safe.

@@ -5,7 +5,7 @@ use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
 use super::texture::Textures;
-use crate::{Density, Dispersion, Lobe, Material, TextureSlot};
+use crate::{Coverage, Density, Dispersion, Lobe, Material, TextureSlot};
 
 /// JSON of a material, with the extensions that it needs. Its textures that have an effect are added
 /// to `textures`.
@@ -96,7 +96,7 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
     let mut written = json!({
         "name": material.name,
         "pbrMetallicRoughness": {
-            "baseColorFactor": material.base_color.extend(1.0).to_array(),
+            "baseColorFactor": material.base_color.extend(material.coverage.map_or(1.0, |coverage| coverage.share)).to_array(),
             "metallicFactor": 0.0,
             "roughnessFactor": material.roughness,
         },
@@ -109,6 +109,14 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
         written[name] = texture;
         if material.normal_scale != 1.0 {
             written[name]["scale"] = json!(material.normal_scale);
+        }
+    }
+    match material.coverage {
+        None => {}
+        Some(Coverage { cutoff: None, .. }) => written["alphaMode"] = json!("BLEND"),
+        Some(Coverage { cutoff: Some(cutoff), .. }) => {
+            written["alphaMode"] = json!("MASK");
+            written["alphaCutoff"] = json!(cutoff);
         }
     }
     if material.double_sided {

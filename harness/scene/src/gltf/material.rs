@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use ::gltf::json::Root;
-use ::gltf::json::material::Material as JsonMaterial;
+use ::gltf::json::material::{AlphaMode, Material as JsonMaterial};
 use ::gltf::json::texture::Info;
 use ::gltf::json::validation::Checked;
 use glam::Vec3;
@@ -19,7 +19,7 @@ use super::extension::Extension;
 use super::extras;
 use super::medium;
 use super::texture::{Reference, Shortfall, Textures};
-use crate::{Dispersion, Material, TextureSlot};
+use crate::{Coverage, Dispersion, Material, TextureSlot};
 
 /// Extensions whose specifications forbid combining them with any of [`OF_PHYSICAL_SHADING`].
 const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"];
@@ -191,20 +191,28 @@ fn surface(json: &JsonMaterial) -> Result<Material, String> {
             return Err(format!("its {name} is {factor:?}, but must lie from 0 to 1"));
         }
     }
-    let [red, green, blue, _] = factors.base_color_factor.0;
+    let [red, green, blue, alpha] = factors.base_color_factor.0;
     let color = [red, green, blue];
     if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
         return Err(format!("its baseColorFactor is {color:?}, but each part must lie from 0 to 1"));
     }
-    if json.alpha_mode == Checked::Invalid {
-        return Err("its alphaMode is not one of glTF's, OPAQUE, MASK and BLEND".to_owned());
+    let cutoff = json.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+    let coverage = match json.alpha_mode {
+        Checked::Invalid => return Err("its alphaMode is not one of glTF's, OPAQUE, MASK and BLEND".to_owned()),
+        Checked::Valid(AlphaMode::Opaque) => None,
+        Checked::Valid(AlphaMode::Mask) => Some(Coverage { share: alpha, cutoff: Some(cutoff) }),
+        Checked::Valid(AlphaMode::Blend) => Some(Coverage { share: alpha, cutoff: None }),
+    };
+    if coverage.is_some_and(|coverage| !coverage.is_sound()) {
+        return Err(format!("its alpha is {alpha:?} and its alphaCutoff {cutoff:?}; give 0 to 1, and at least 0"));
     }
     let normal_scale = json.normal_texture.as_ref().map_or(1.0, |texture| texture.scale);
     if !normal_scale.is_finite() {
         return Err("the scale of its normalTexture is not finite in single precision; mend it".to_owned());
     }
     let double_sided = json.double_sided;
-    Ok(Material { base_color: Vec3::from_array(color), normal_scale, roughness, double_sided, ..Material::standard() })
+    let base_color = Vec3::from_array(color);
+    Ok(Material { base_color, coverage, normal_scale, roughness, double_sided, ..Material::standard() })
 }
 
 fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> {

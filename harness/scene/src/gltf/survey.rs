@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use ::gltf::Semantic;
 use ::gltf::json::Root;
-use ::gltf::json::material::{AlphaMode, Material as JsonMaterial};
+use ::gltf::json::material::Material as JsonMaterial;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use serde_json::{Map, Value};
@@ -166,14 +166,6 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
     let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
-    }
-    let mode = match json.alpha_mode {
-        Checked::Valid(AlphaMode::Blend) => Some("BLEND"),
-        Checked::Valid(AlphaMode::Mask) => Some("MASK"),
-        _ => None,
-    };
-    if let Some(mode) = mode {
-        lacking.note("alpha", format!("`alphaMode` {mode}"), "alpha is not read", user);
     }
     if json.emissive_factor.0.iter().any(|part| *part != 0.0) {
         lacking.note("emission", "`emissiveFactor`".to_owned(), "nothing shines by itself", user);

@@ -1,6 +1,7 @@
 //! Rough and partly clear bodies.
 
 use super::*;
+use lapidary_scene::Coverage;
 
 fn rough(ior: f32, roughness: f32) -> Material {
     Material { roughness, ..glass(ior) }
@@ -77,5 +78,32 @@ fn frosted_glass_is_as_the_reference_shows_it() {
         let [rung, truth] = ["scene-32", "reference"].map(|rung| blocks(&drawn(&scene, &settings(rung))));
         let error = rung.iter().zip(&truth).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f64::max);
         assert!(error < 0.03, "scene {number}: {error}");
+    }
+}
+
+/// A surface that covers a share of what is behind it shows the rest: a matte one by itself, by the samples that it covers,
+/// and one that a clear body shows.
+#[test]
+fn what_is_not_covered_is_seen() {
+    let color = Vec3::new(0.8, 0.4, 0.1);
+    let seen_with = |coverage, objects: fn(Object) -> Vec<Object>, rung: &str| {
+        let screen = Material { coverage, ..matte(color) };
+        let screen = Object::new("screen", cube(1.0).placed(DQuat::IDENTITY, -1.5 * DVec3::Z), screen);
+        let settings = Settings { samples: 4, ..of_rung(rung) };
+        middle(&drawn(&scene(objects(screen)), &settings))
+    };
+    let alone: fn(Object) -> Vec<Object> = |screen| vec![screen, ball(0.9, -4.0 * DVec3::Z, matte(Vec3::splat(0.5)))];
+    let behind_glass: fn(Object) -> Vec<Object> = |screen| {
+        let pane = Object::new("pane", cube(0.3), Material { thickness: 0.0, ..glass(1.0) });
+        vec![pane, screen, ball(0.9, -4.0 * DVec3::Z, matte(Vec3::splat(0.5)))]
+    };
+    let blend = |share| Some(Coverage { share, cutoff: None });
+    let mask = |share| Some(Coverage { share, cutoff: Some(0.5) });
+    for (coverage, share) in [(None, 1.0), (blend(0.25), 0.25), (blend(0.75), 0.75), (mask(0.4), 0.0), (mask(0.6), 1.0)] {
+        let expected = share * color.as_dvec3() + (1.0 - share) * 0.5;
+        for (objects, rung) in [(alone, "by-material"), (behind_glass, "scene-8"), (behind_glass, "reference")] {
+            let seen = seen_with(coverage, objects, rung);
+            assert!((seen - expected).abs().max_element() < 3e-3, "{coverage:?}, {rung}: {seen} for {expected}");
+        }
     }
 }
