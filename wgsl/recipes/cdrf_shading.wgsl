@@ -4,7 +4,7 @@
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, diffusion, environment, fresnel, half_space, microfacet, reflective_shadow_map
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow
-// parts: stone_shadow, harmonics, reflection, scattering_law, material_textures
+// parts: stone_shadow, harmonics, reflection, scattering_law, material_textures, sample_rank
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
@@ -580,14 +580,12 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
 }
 
 // The coverage above which a sample is drawn: the cutoff, or one of 16 evenly spaced shares, each once in
-// 4 x 4 neighbouring samples (Bayer's matrix), so that bodies need no order.
+// 4 x 4 neighbouring samples, so that bodies need no order.
 fn cdrf_threshold(place: vec2u) -> f32 {
     if (material.cutoff >= 0.0f) {
         return material.cutoff;
     }
-    let across = place.x ^ place.y;
-    let rank = 8u * (across & 1u) + 4u * (place.y & 1u) + 2u * ((across >> 1u) & 1u) + ((place.y >> 1u) & 1u);
-    return fract((f32(rank) + 0.5f) / 16.0f + material.shift);
+    return fract((f32(sample_rank(place)) + 0.5f) / 16.0f + material.shift);
 }
 
 @fragment

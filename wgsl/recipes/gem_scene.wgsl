@@ -4,7 +4,7 @@
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
 // requires: absorption, bvh_trace, cdrf, environment, fresnel, microfacet, proxy_geometry, random_walk, refraction
-// parts: surroundings, lights, glints, harmonics, trace_nearest
+// parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
 // set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
@@ -146,10 +146,10 @@ struct SceneRay {
 var<private> scene_waiting: array<SceneRay, SCENE_WAITING>;
 // Radiance found so far.
 var<private> scene_found: vec3f;
-// Counter of random numbers: the pixel's place, and the surfaces found so far.
+// Counter of random numbers: the sample's place, how many were drawn, and the tree.
 var<private> scene_counter: vec4u;
-// Shift of random numbers for this tree: those of all trees lie evenly (Roberts' sequence in four dimensions).
-var<private> scene_shift: vec4f;
+// The rank of this tree among those of 4 x 4 samples.
+var<private> scene_rank: f32;
 
 fn scene_strength(ray: SceneRay) -> f32 {
     return max(max(ray.throughput.r, ray.throughput.g), ray.throughput.b);
@@ -305,8 +305,21 @@ fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
 // Random numbers, four for each call.
 fn scene_random() -> vec4f {
     scene_counter.z++;
-    let random = random_walk_random(scene_counter);
-    return min(fract(random + scene_shift), vec4f(0.99999994f));
+    return random_walk_random(scene_counter);
+}
+
+// Random numbers of the first two surfaces, which for all trees of 4 x 4 samples lie evenly: Roberts' sequence in
+// eight dimensions, from a random start.
+fn scene_evenly() -> vec4f {
+    if (scene_counter.z > 2u) {
+        return scene_random();
+    }
+    let first = vec4f(0.9215993f, 0.8493453f, 0.7827561f, 0.7213874f);
+    let second = vec4f(0.6648302f, 0.612707f, 0.5646704f, 0.5203999f);
+    let step = select(second, first, scene_counter.z == 0u);
+    let start = random_walk_random(vec4u(scene_counter.xy >> vec2u(2u), scene_counter.z, 0x10000u));
+    scene_counter.z++;
+    return min(fract(start + scene_rank * step), vec4f(0.99999994f));
 }
 
 // Light among the facets of a rough surface.
@@ -379,7 +392,7 @@ struct SceneSplit {
 fn scene_split_rough(
     direction: vec3f, facing: vec3f, normal: vec3f, relative_index: f32, alpha: f32
 ) -> SceneSplit {
-    let random = scene_random();
+    let random = scene_evenly();
     let below = scene_below(dot(direction, normal), 1.0f, alpha, random.x);
     let facet = microfacet_facet(normal, -direction, alpha, random.y, random_walk_azimuth(random.z));
     let refracted = refraction_refract(direction, facet, relative_index);
@@ -488,7 +501,7 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
             var normal = facing;
             if (EFFECT_ROUGH) {
                 if (body.alpha > 0.0f) {
-                    let random = scene_random();
+                    let random = scene_evenly();
                     normal = microfacet_facet(
                         facing, -ray.direction, body.alpha, random.x, random_walk_azimuth(random.y)
                     );
@@ -605,8 +618,9 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
 // Sets the random numbers of a tree of rays.
 fn scene_start_tree(input: GemVertex, tree: u32) {
     if (EFFECT_ROUGH) {
-        scene_counter = vec4u(vec2u(input.clip.xy), 0u, 0u);
-        scene_shift = f32(tree) * vec4f(0.8566749f, 0.7338919f, 0.6287067f, 0.5385973f);
+        let place = vec2u(input.clip.xy);
+        scene_counter = vec4u(place, 0u, tree);
+        scene_rank = f32(sample_rank(place) * WAVELENGTHS + tree);
     }
 }
 

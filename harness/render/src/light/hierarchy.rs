@@ -170,7 +170,8 @@ fn record(material: &Material) -> Record {
         _ if material.is_thin_wall() => 1,
         _ => 0,
     };
-    let clear = if material.is_opaque() { 1.0 - material.covered_share() } else { material.clear_share() };
+    // What scatters is matte here.
+    let clear = if material.is_clear() { material.clear_share() } else { 1.0 - material.covered_share() };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
     let record = Record::new("SceneBody").with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);

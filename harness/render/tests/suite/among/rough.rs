@@ -101,7 +101,13 @@ fn what_is_not_covered_is_seen() {
     let mask = |share| Some(Coverage { share, cutoff: Some(0.5) });
     for (coverage, share) in [(None, 1.0), (blend(0.25), 0.25), (blend(0.75), 0.75), (mask(0.4), 0.0), (mask(0.6), 1.0)] {
         let expected = share * color.as_dvec3() + (1.0 - share) * 0.5;
-        for (objects, rung) in [(alone, "by-material"), (behind_glass, "scene-8"), (behind_glass, "reference")] {
+        let of_scattering: fn(Object) -> Vec<Object> = |screen| {
+            let far = Material { sigma0: Some(Vec3::ONE), ..matte(Vec3::splat(0.5)) };
+            let pane = Object::new("pane", cube(0.3), Material { thickness: 0.0, ..glass(1.0) });
+            vec![pane, screen, ball(0.9, -4.0 * DVec3::Z, far)]
+        };
+        let glazed = [(behind_glass, "scene-8"), (of_scattering, "scene-8"), (behind_glass, "reference")];
+        for (objects, rung) in [(alone, "by-material")].into_iter().chain(glazed) {
             let seen = seen_with(coverage, objects, rung);
             assert!((seen - expected).abs().max_element() < 3e-3, "{coverage:?}, {rung}: {seen} for {expected}");
         }
