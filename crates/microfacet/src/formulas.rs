@@ -131,7 +131,8 @@ pub fn formulas() -> Vec<Formula> {
 }
 
 fn functions() -> Vec<Formula> {
-    let all = [vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive()], facets()];
+    let all =
+        [vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive()], facets()];
     all.into_iter().flatten().chain([reflectance()]).collect()
 }
 

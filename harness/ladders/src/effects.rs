@@ -14,7 +14,7 @@ use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Copies, Dispersion, Environment, Light, Material, Object, Place, Scene};
+use lapidary_scene::{Copies, Coverage, Dispersion, Environment, Light, Material, Object, Place, Scene};
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -120,6 +120,17 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     for object in &mut frosted.objects {
         (object.material.roughness, object.material.transmission) = (0.5, 0.8);
     }
+    let sheer = Scene {
+        objects: one("wax")?
+            .objects
+            .into_iter()
+            .map(|object| {
+                let coverage = Some(Coverage { share: 0.5, cutoff: None });
+                Object { material: Material { coverage, ..Material::standard() }, ..object }
+            })
+            .collect(),
+        ..one("wax")?
+    };
     let mut thin = one("ruby")?;
     for object in &mut thin.objects {
         object.material.thickness = 0.0;
@@ -255,6 +266,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             },
             effects: &[Effect::Cdrf, Effect::Environment, Effect::Reflection, Effect::EnvironmentMap],
             stands_on: &[(Effect::EnvironmentMap, Effect::Reflection)],
+        },
+        Case {
+            name: "wax, opaque, half covering",
+            scene: sheer,
+            settings: settings("by-material"),
+            effects: &[Effect::Coverage, Effect::Environment, Effect::Microfacet],
+            stands_on: &[],
         },
         Case {
             name: "wax_bunny",

@@ -4,7 +4,8 @@ use crate::casting::bounds;
 use crate::remembered::Remembered;
 use glam::{Mat4, Vec2, Vec3};
 use lapidary_scene::normals::{self, Normals};
-use lapidary_scene::{Bounds, Object, Scene, clip_from_world};
+use lapidary_scene::{Bounds, Mesh, Object, Scene, clip_from_world};
+use std::collections::BTreeMap;
 
 /// Number of vertices of a body of which it is asked whether they lie in the other.
 const VERTICES: usize = 32;
@@ -15,6 +16,11 @@ const MOST_PRODUCTS: usize = 1 << 22;
 const BELOW: f32 = 1e-4;
 /// Number of bodies above which none is compared with the others: all pairs of more would take longer than drawing them.
 pub(crate) const MOST_COMPARED: usize = 256;
+
+/// Steps of a unit vector's parts within which two faces count as parallel.
+const PARALLEL: f32 = 64.0;
+/// Share of a body's area that each of two parallel faces has at least.
+const LEAST_FACE: f32 = 0.12;
 
 /// How much of a body lies within another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +123,32 @@ pub(crate) fn any_share(scene: &Scene) -> Option<(&Object, &str)> {
 
 /// Returns the first clear body that overlaps another clear one in a picture of this size: their boxes do.
 pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
+    overlapping(object, scene, size, true)
+}
+
+/// Returns the first body that is seen undistorted through a clear one, between two parallel faces: one that is not clear,
+/// and overlaps it in a picture of this size.
+pub(crate) fn seen_straight<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
+    static FOUND: Remembered<bool> = Remembered::new();
+    let other = overlapping(object, scene, size, false)?;
+    FOUND.of(object.shape(), has_parallel_faces).then_some(other)
+}
+
+/// Whether two opposite directions each face a share of a mesh's area.
+fn has_parallel_faces(mesh: &Mesh) -> bool {
+    let mut areas: BTreeMap<[i32; 3], f32> = BTreeMap::new();
+    for [a, b, c] in mesh.triangles() {
+        let across = (b - a).cross(c - a);
+        let direction = (PARALLEL * across.normalize_or_zero()).round().as_ivec3();
+        *areas.entry(direction.to_array()).or_default() += across.length();
+    }
+    let least = LEAST_FACE * areas.values().sum::<f32>();
+    let is_wide = |direction: &[i32; 3]| areas.get(direction).is_some_and(|area| *area >= least);
+    areas.keys().any(|direction| is_wide(direction) && is_wide(&direction.map(|part| -part)))
+}
+
+/// Returns the first body, clear or not, that overlaps another one in the view.
+fn overlapping<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2], clear: bool) -> Option<&'a Object> {
     // The matrix asks for the bounds of the whole scene.
     others(object, scene).next()?;
     let matrix = clip_from_world(scene, size[0], size[1]);
@@ -124,7 +156,7 @@ pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2])
     let overlaps = |bounds: Bounds| {
         seen(bounds, matrix).is_some_and(|other| own.0.cmplt(other.1).all() && other.0.cmplt(own.1).all())
     };
-    let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() && overlaps(*bounds));
+    let found = others(object, scene).find(|(other, bounds)| other.material.is_clear() == clear && overlaps(*bounds));
     found.map(|(other, _)| other)
 }
 

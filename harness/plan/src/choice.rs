@@ -75,7 +75,13 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
     let stands = request.quality != Quality::Fast && has(Effect::Around);
-    let around = among::stands_in(object, scene).filter(|_| stands && inside)?;
+    if !stands {
+        return None;
+    }
+    if let Some(other) = among::seen_straight(object, scene, request.size).filter(|_| inside) {
+        return Some(format!("{} is seen straight through its parallel faces", other.name));
+    }
+    let around = among::stands_in(object, scene).filter(|_| inside)?;
     Some(format!("it stands within the bounds of {}", around.name))
 }
 

@@ -11,7 +11,9 @@ use super::numbers::{short, triple};
 use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Coverage, Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot};
+use lapidary_scene::{
+    Coverage, Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot,
+};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,7 +142,8 @@ impl Case<'_> {
             Effect::BoundsTrace => self.bounds_trace(),
             // Others need not be measured for them.
             Effect::Nested | Effect::Behind | Effect::Around | Effect::Smooth | Effect::Rough | Effect::Light
-                if !self.is_gem() => {
+                if !self.is_gem() =>
+            {
                 off(self.not_clear())
             }
             Effect::Nested => self.nested(),
@@ -754,7 +757,9 @@ impl Case<'_> {
         match self.material.coverage {
             None => off("alphaMode OPAQUE"),
             Some(_) if self.material.covers_all() => off("alpha covers all"),
-            Some(Coverage { share, cutoff: None }) => self.drawn_by_rung(format!("alphaMode BLEND, alpha {}", short(share))),
+            Some(Coverage { share, cutoff: None }) => {
+                self.drawn_by_rung(format!("alphaMode BLEND, alpha {}", short(share)))
+            }
             Some(Coverage { cutoff: Some(cutoff), .. }) => {
                 self.drawn_by_rung(format!("alphaMode MASK, cutoff {}", short(cutoff)))
             }

@@ -349,7 +349,8 @@ impl<'scene> Job<'scene> {
         (0..self.samples * self.samples).map(move |sample| {
             let (row, column) = (sample / self.samples, sample % self.samples);
             // The same numbers on any number of threads.
-            let counter = (u64::from(y) << 32 | u64::from(x)) * u64::from(self.samples * self.samples) + u64::from(sample);
+            let counter =
+                (u64::from(y) << 32 | u64::from(x)) * u64::from(self.samples * self.samples) + u64::from(sample);
             self.sample(self.view.direction(place(x, column), place(y, row)), counter)
         })
     }

@@ -329,8 +329,14 @@ fn with_inclusion(index: f32, inclusion: Material) -> Scene {
 fn a_body_within_another_is_seen_and_keeps_the_energy() {
     let environment = ones();
     let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
-    let clear =
-        |ior, base_color| Material { transmission: 1.0, thickness: 1.0, roughness: 0.0, ior, base_color, ..Material::standard() };
+    let clear = |ior, base_color| Material {
+        transmission: 1.0,
+        thickness: 1.0,
+        roughness: 0.0,
+        ior,
+        base_color,
+        ..Material::standard()
+    };
     for index in [1.0, 1.5, 2.4] {
         for inclusion in [Material::standard(), clear(1.0, Vec3::ONE), clear(1.3, Vec3::ONE), clear(2.4, Vec3::ONE)] {
             let job = Job::new(&with_inclusion(index, inclusion.clone()), &settings);

@@ -332,7 +332,18 @@ impl Surroundings<'_> {
         let given = side * given;
         let shading = if given.dot(direction) < 0.0 { given } else { normal };
         let enters = matches!(way, Way::In);
-        Some(Arrival { point, direction, normal, shading, surface, enters, place: hit.place, before, behind, throughput })
+        Some(Arrival {
+            point,
+            direction,
+            normal,
+            shading,
+            surface,
+            enters,
+            place: hit.place,
+            before,
+            behind,
+            throughput,
+        })
     }
 }
 
@@ -388,7 +399,8 @@ impl Arrival {
         let (Some(relative_index), through) = self.cross(order, optics) else {
             return self.cross(order, optics).1;
         };
-        let (direction, passes) = rough::scatter(random, self.direction, self.shading, self.surface.alpha, relative_index);
+        let (direction, passes) =
+            rough::scatter(random, self.direction, self.shading, self.surface.alpha, relative_index);
         let direction = self.on_side(direction, passes);
         if passes { Ray { direction, ..through } } else { self.leave(direction, self.before, self.throughput) }
     }

@@ -8,7 +8,7 @@ use lapidary_render::plan::{Listing, Plan, Resource};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
-use lapidary_scene::{Copies, Density, Encoding, Environment, Material, Object, Place, Scene, Texture};
+use lapidary_scene::{Copies, Coverage, Density, Encoding, Environment, Material, Object, Place, Scene, Texture};
 use lapidary_testing::gpu;
 use std::collections::BTreeSet;
 
@@ -236,6 +236,9 @@ fn cases() -> Vec<Case> {
     let clear = Scene { objects: pearl.objects[..2].to_vec(), ..pearl.clone() };
     let mut round = one("octahedron");
     round.objects[0].mesh = lapidary_scene::surfaces::sphere(1.0, 24);
+    let mut sheer = one("octahedron");
+    let coverage = Some(Coverage { share: 0.5, cutoff: None });
+    sheer.objects[0].material = Material { coverage, ..Material::standard() };
     let mut frosted = one("octahedron");
     frosted.objects[0].material.roughness = 0.5;
     let sun = Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE };
@@ -427,6 +430,7 @@ fn cases() -> Vec<Case> {
             [vec!["transmission image", "transmission image's sampler"], vec![], vec![]],
         ),
         case(Effect::VertexColor, coloured, of_rung("accurate"), [vec!["colors"], vec![], vec![]]),
+        case(Effect::Coverage, sheer, of_rung("lambert"), none()),
         case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),
         case(Effect::SecondLobe, one("head"), of_rung("accurate"), none()),
         case(
