@@ -4,7 +4,8 @@
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
 //   Surfaces", 2007, eq. (20), (33); Heitz, "Understanding the Masking-Shadowing Function in
 //   Microfacet-Based BRDFs", 2014, eq. (72), (99); Lagrange's identity for the squared sine: Guy
-//   and Agopian, "Physically Based Rendering in Filament", 4.4.1.
+//   and Agopian, "Physically Based Rendering in Filament", 4.4.1; visible facets: Dupuy and Benyoub, "Sampling
+//   Visible GGX Normals with Spherical Caps", 2023.
 //
 // `alpha` is the width of the distribution, a slope: the square of glTF's roughness. The Fresnel
 // reflectance of a facet is not computed here but passed in: evaluate it at the cosine between
