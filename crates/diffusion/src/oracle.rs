@@ -1,14 +1,14 @@
 //! The oracle in f64. Integrals of transmittance are Gauss quadratures of what they integrate. The
 //! fluence in a half space is the integral of its source with Green's function of Robin's condition. The
 //! local parts are quadratures of the grid's straight lines and of the solution below them; the solution
-//! there is the closed form with `exp_m1`, which the tests compare with Green's function. The extrapolation length is a quadrature
-//! of Fresnel's reflectance. Conductances are sums of resistances.
+//! there is the closed form with `exp_m1`, which the tests compare with Green's function. The extrapolation length is that of
+//! Milne's problem with a boundary, by the H function. Conductances are sums of resistances.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// The module's constants, repeated so that an error in them does not carry over to the oracle.
-const MILNE: f32 = 0.7104;
 const THINNEST: f32 = 1e-3;
 const LEAST_DEPTH: f32 = 0.05;
 const LEAST_DISTANCE: f32 = 0.25;
@@ -18,6 +18,9 @@ const LEAST_STEP: f32 = 0.01;
 const THINNEST_FACE: f32 = 1e-9;
 const GRAZING: f32 = 1e-9;
 const LENGTHS: (f64, f64) = (0.5, 20.0);
+
+/// Milne's length, of a half space without a boundary.
+const MILNE: f64 = 0.710_446_089_598_763;
 
 /// Optical depth at which quadratures end: 3e-20 of the light is left.
 const END: f64 = 45.0;
@@ -57,10 +60,6 @@ fn graded(high: f64, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
     sum
 }
 
-fn milne_length() -> f64 {
-    f64::from(MILNE)
-}
-
 /// Returns Fresnel's reflectance from inside.
 fn reflected(cosine: f64, index: f64) -> f64 {
     let radicand = 1.0 - index * index * (1.0 - cosine) * (1.0 + cosine);
@@ -73,21 +72,75 @@ fn reflected(cosine: f64, index: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
-/// Integrates Fresnel's reflectance, with the square of a variable from the critical angle on.
+/// Points on [0, 1] and their weights: Gauss's in equal panels.
+fn points(panels: u32) -> Vec<(f64, f64)> {
+    let half = 0.5 / f64::from(panels);
+    let middles = (0..panels).map(|panel| half * (2.0 * f64::from(panel) + 1.0));
+    middles.flat_map(|middle| GAUSS.map(|(node, weight)| (middle + half * node, half * weight))).collect()
+}
+
+/// Returns Chandrasekhar's H function of matter that absorbs nothing, from the integral of its logarithm over
+/// ln(1 - atan(x) / x), with x from 0 to infinity.
+fn h(cosine: f64) -> f64 {
+    static LOGARITHMS: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
+        let of_point = |(u, weight): (f64, f64)| {
+            // Steep at neither end, where the logarithm and x are.
+            let share = u.powi(3) * (10.0 - 15.0 * u + 6.0 * u * u);
+            let rest = (1.0 - u).powi(3) * (1.0 + 3.0 * u + 6.0 * u * u);
+            let slope = 30.0 * (u * (1.0 - u)).powi(2);
+            let x: f64 = share / rest;
+            let square = x * x;
+            let lost = if x < 0.01 { square * (1.0 / 3.0 - square * (0.2 - square / 7.0)) } else { 1.0 - x.atan() / x };
+            (x, weight * slope / rest.powi(2) * lost.ln())
+        };
+        points(32).into_iter().map(of_point).collect()
+    });
+    let sum: f64 = LOGARITHMS.iter().map(|(x, part)| part / (1.0 + (cosine * x).powi(2))).sum();
+    (-cosine / PI * sum).exp()
+}
+
+/// Solves linear equations, each with its right side last, by elimination; the diagonal is the largest of each column.
+fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+    let count = rows.len();
+    for pivot in 0..count {
+        let top = rows[pivot].clone();
+        for row in &mut rows[pivot + 1..] {
+            let factor = row[pivot] / top[pivot];
+            row[pivot..].iter_mut().zip(&top[pivot..]).for_each(|(part, above)| *part -= factor * above);
+        }
+    }
+    let mut found = vec![0.0; count];
+    for place in (0..count).rev() {
+        let known: f64 = (place + 1..count).map(|other| rows[place][other] * found[other]).sum();
+        found[place] = (rows[place][count] - known) / rows[place][place];
+    }
+    found
+}
+
+/// Solves for the light that comes to the boundary from inside: what a half space without a boundary sends out, and what
+/// it sends back of the light that the boundary throws in. Each part of that adds to the fluence deep inside.
 pub fn milne(relative_index: f64) -> f64 {
     let index = relative_index.clamp(1.0, 2.5);
     if index == 1.0 {
-        return milne_length();
+        return MILNE;
     }
     let critical = ((index - 1.0) * (index + 1.0)).sqrt() / index;
-    let mean = |power: i32| {
-        let weighted = |u: f64| {
-            let m = critical + (1.0 - critical) * u * u;
-            2.0 * u * (1.0 - critical) * reflected(m, index) * f64::from(power) * m.powi(power - 1)
-        };
-        critical.powi(power) + integral(0.0, 1.0, 1.0 / 32.0, weighted)
+    // Grazing light changes fast, and so does Fresnel's reflectance beside the critical angle.
+    let squared = |(u, weight): (f64, f64)| (u * u, 2.0 * u * weight);
+    let below = points(3).into_iter().map(squared).map(|(m, weight)| (critical * m, critical * weight));
+    let above = points(3).into_iter().map(squared);
+    let above = above.map(|(m, weight)| (critical + (1.0 - critical) * m, (1.0 - critical) * weight));
+    // Cosine, H, and the weight of what is thrown back.
+    let of_point = |(m, weight): (f64, f64)| (m, h(m), weight * m * h(m) * reflected(m, index));
+    let rays: Vec<(f64, f64, f64)> = below.chain(above).map(of_point).collect();
+    let row = |(m, h, _): &(f64, f64, f64)| {
+        let back = rays.iter().map(|(other, _, back)| -0.5 * h * back / (m + other));
+        back.chain([h / 3f64.sqrt()]).collect::<Vec<f64>>()
     };
-    milne_length() * (1.0 + mean(3)) / (1.0 - mean(2))
+    let mut rows: Vec<Vec<f64>> = rays.iter().map(row).collect();
+    (0..rows.len()).for_each(|number| rows[number][number] += 1.0);
+    let light = solved(rows);
+    MILNE + 0.75f64.sqrt() * rays.iter().zip(&light).map(|((.., back), light)| back * light).sum::<f64>()
 }
 
 /// Adds the resistances of two halves.
