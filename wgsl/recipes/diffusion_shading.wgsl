@@ -213,6 +213,16 @@ fn diffusion_around(normal: vec3f, toward_eye: vec3f) -> DiffusionAround {
     return DiffusionAround(0.31830987f * squared * near, unit * near, unit * far, squared * behind);
 }
 
+// Radiance from all around that a rough surface mirrors, by the harmonics: microfacets of slope alpha leave
+// exp(-(alpha l)^2) of those of degree l (Ramamoorthi and Hanrahan, "A Signal-Processing Framework for Inverse
+// Rendering", 2001).
+fn diffusion_around_mirrored(normal: vec3f, toward_eye: vec3f) -> vec3f {
+    let around = harmonics_around(reflect(-toward_eye, normal));
+    let squared = body.alpha * body.alpha;
+    let sharper = exp(-squared) * around.first + exp(-4.0f * squared) * around.second + exp(-16.0f * squared) * around.fourth;
+    return max(around.zeroth + sharper, vec3f(0.0f));
+}
+
 // Radiance towards the eye under a radiance of 1 from all around, by a half space. With a boundary it is that
 // of diffusion.
 fn diffusion_law_around(cosine: f32, gamma: f32) -> f32 {
@@ -764,6 +774,11 @@ fn diffusion_fragment(input: DiffusionVertex) -> @location(0) vec4f {
             passing = select(passing, 1.0f, body.alpha == 0.0f);
         }
         sent *= passing / (body.index * body.index);
+        if (EFFECT_ENVIRONMENT) {
+            if (body.alpha > 0.0f) {
+                sent += (1.0f - passing) * diffusion_around_mirrored(normal, toward_eye);
+            }
+        }
     }
     var radiance = sent;
     if (EFFECT_REFLECTION) {
