@@ -76,7 +76,7 @@ impl<'gpu> Sequence<'gpu> {
     ) -> Result<Self, CostError> {
         let [width, height] = options.frame;
         let warm = start == Start::Warm;
-        let diffusion = DiffusionOptions { cycles, warm, residual };
+        let diffusion = DiffusionOptions { cycles, most_cycles: cycles, warm, residual };
         let settings = Settings { rung, samples: 1, diffusion, ..Settings::of_size(width, height) };
         // The first frame only gives the others something to begin with.
         let mut frames: Vec<FrameTimer<'_>> = Vec::new();

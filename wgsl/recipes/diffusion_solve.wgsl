@@ -18,7 +18,10 @@
 //    back up, `diffusion_solve_prolong` to the next finer level, and sweeps in the colours' reverse order.
 //    From no light at all, with the finest `fluence` cleared, a first cycle sweeps on the way up alone, and not on
 //    the finest level.
-// 3. If asked for, on the finest level `diffusion_solve_residual`, with `residuals` cleared before.
+// 3. More cycles, dispatched by copies of the counts. Before each, with `residuals` cleared before the first,
+//    `diffusion_solve_residual` on the finest level, and on each level `diffusion_solve_stop`, one workgroup, with
+//    the copy as `workgroups`: once enough of the equations is solved, it sets the count to 0, and nothing more
+//    is done. The finest level's residual is also what a host may read.
 // 4. `diffusion_solve_pack`, with `packed` cleared before, for the recipe that shades.
 // With the flux limiter conductances of the finest level are limited by the fluence as it is: in
 // `diffusion_solve_sweep`, `diffusion_solve_restrict`, `diffusion_solve_residual` and, at the start of each
@@ -34,6 +37,9 @@ const DIFFUSION_TURNS: u32 = 6u;
 
 // Conductances are limited by the fluence: the flux limiter, on the finest level.
 override DIFFUSION_LIMITED: bool = false;
+
+// What may be left of the equations, as a share of their right side.
+override DIFFUSION_ENOUGH: f32 = 1e-3f;
 
 struct DiffusionLevel {
     // Cells along an edge.
@@ -333,6 +339,28 @@ fn diffusion_solve_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_
             sum += squares[other][number];
         }
         residuals[group.x][number] = vec4f(sum, 0.0f);
+    }
+}
+
+@compute @workgroup_size(64)
+fn diffusion_solve_stop(@builtin(local_invocation_index) lane: u32) {
+    var left = vec3f(0.0f);
+    var load = vec3f(0.0f);
+    for (var tile = lane; tile < arrayLength(&residuals); tile += 64u) {
+        left += residuals[tile][0].xyz;
+        load += residuals[tile][1].xyz;
+    }
+    squares[lane] = array<vec3f, 2>(left, load);
+    workgroupBarrier();
+    if (lane > 0u) {
+        return;
+    }
+    for (var other = 1u; other < 64u; other++) {
+        left += squares[other][0];
+        load += squares[other][1];
+    }
+    if (all(left <= DIFFUSION_ENOUGH * DIFFUSION_ENOUGH * load)) {
+        atomicStore(&workgroups[0], 0u);
     }
 }
 

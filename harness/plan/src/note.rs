@@ -30,7 +30,7 @@ pub enum Note {
     Solved {
         /// Name of the object.
         object: String,
-        /// Number of multigrid cycles.
+        /// Largest number of multigrid cycles.
         cycles: u32,
         /// What is left of the equations in each channel, as a share of their right side.
         residual: [f64; 3],
@@ -266,7 +266,7 @@ impl fmt::Display for Note {
             ),
             Self::Solved { object, cycles, residual: [red, green, blue] } => write!(
                 f,
-                "object `{object}`: after {cycles} cycle{} of multigrid, {red:.1e}, {green:.1e} and {blue:.1e} of its equations of diffusion are \
+                "object `{object}`: after {cycles} cycle{} of multigrid at most, {red:.1e}, {green:.1e} and {blue:.1e} of its equations of diffusion are \
                  left in red, green and blue",
                 if *cycles == 1 { "" } else { "s" }
             ),
@@ -391,7 +391,7 @@ mod tests {
             line
         };
         let solved = Note::Solved { object: "hare".to_owned(), cycles: 3, residual: [1e-3, 2.5e-4, 0.0] }.to_string();
-        assert!(solved.contains("after 3 cycles of multigrid, 1.0e-3, 2.5e-4 and 0.0e0"), "{solved}");
+        assert!(solved.contains("after 3 cycles of multigrid at most, 1.0e-3, 2.5e-4 and 0.0e0"), "{solved}");
         let mut lines = vec![open, stopped, solved];
         lines.extend([
             line_of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),

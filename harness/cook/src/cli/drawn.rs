@@ -239,6 +239,7 @@ impl Drawn {
             },
             diffusion: self.diffusion.as_ref().map_or(asked.diffusion, |options| DiffusionOptions {
                 cycles: options.cycles.unwrap_or(asked.diffusion.cycles),
+                most_cycles: options.cycles.unwrap_or(asked.diffusion.most_cycles),
                 residual: options.residual,
                 ..asked.diffusion
             }),

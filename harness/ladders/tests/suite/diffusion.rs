@@ -300,7 +300,7 @@ fn a_wide_slab_is_as_bright_as_a_half_space() {
                     rung: "diffusion-64".parse().expect("a rung"),
                     samples: 1,
                     without,
-                    diffusion: DiffusionOptions { cycles: 12, ..DiffusionOptions::default() },
+                    diffusion: DiffusionOptions { cycles: 12, most_cycles: 12, ..DiffusionOptions::default() },
                     ..Settings::of_size(16, 16)
                 };
                 let found = mean(&render::render(lapidary_testing::gpu(), &scene, &settings).expect("rendered"));
@@ -337,7 +337,7 @@ fn a_white_body_in_a_white_room_cannot_be_seen() {
             rung: "diffusion-32".parse().expect("a rung"),
             samples: 1,
             environment: room.clone(),
-            diffusion: DiffusionOptions { cycles: 12, ..DiffusionOptions::default() },
+            diffusion: DiffusionOptions { cycles: 12, most_cycles: 12, ..DiffusionOptions::default() },
             ..Settings::of_size(64, 64)
         };
         let picture = render::render(lapidary_testing::gpu(), &scene, &settings).expect("rendered");

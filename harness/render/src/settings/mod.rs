@@ -119,8 +119,10 @@ impl Default for GemOptions {
 /// Options of the recipe `diffusion_solve`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiffusionOptions {
-    /// Number of multigrid cycles of a frame.
+    /// Least number of multigrid cycles of a frame.
     pub cycles: u32,
+    /// Largest number, if more than a thousandth of the equations is left after fewer; no more if it is not above `cycles`.
+    pub most_cycles: u32,
     /// Whether a frame begins with the fluence of the one before, instead of with none.
     pub warm: bool,
     /// Whether a frame also measures what is left of the equations, which is then among the picture's notes.
@@ -129,7 +131,7 @@ pub struct DiffusionOptions {
 
 impl Default for DiffusionOptions {
     fn default() -> Self {
-        Self { cycles: 2, warm: false, residual: false }
+        Self { cycles: 2, most_cycles: 8, warm: false, residual: false }
     }
 }
 

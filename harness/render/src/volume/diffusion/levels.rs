@@ -4,7 +4,7 @@ use super::cells::Cells;
 use super::tiles::{self, TILE, Tiles};
 use crate::frame::record::Record;
 use crate::frame::shader::ShaderError;
-use crate::frame::{BindGroupId, Bound, Buffer, Builder, Dispatch, Frame, PipelineId, Workgroups};
+use crate::frame::{BindGroupId, Bound, Buffer, Builder, Dispatch, Frame, Pass, PipelineId, Workgroups};
 use crate::settings::DiffusionOptions;
 use crate::volume::voxel_grid::VoxelGrid;
 use glam::Vec3;
@@ -26,6 +26,8 @@ struct Level {
     right: Buffer,
     /// The struct `DiffusionLevel` for either colour.
     records: [Buffer; 2],
+    /// The count of tiles while cycles are still needed, as arguments of an indirect dispatch.
+    open: Option<Buffer>,
 }
 
 /// All grids of a body, and the passes that solve its equations.
@@ -39,6 +41,8 @@ pub(super) struct Levels {
     /// The cycle from no light at all: sweeps on the coarser grids alone, on the way up.
     first: Vec<Dispatch>,
     cycle: Vec<Dispatch>,
+    /// What comes before a further cycle, and that cycle, unless enough is solved; nothing if the cycles' number is fixed.
+    further: Vec<Dispatch>,
     /// Sums over the finest level of squares of residuals and right sides, and the pass that leaves them; `None` if
     /// nobody asks.
     residual: Option<(Buffer, Dispatch)>,
@@ -59,7 +63,9 @@ impl Levels {
         while let Some(side) = sides.last().copied().filter(|side| *side > TILE) {
             sides.push(side.div_ceil(2));
         }
-        let made: Vec<Level> = (0..sides.len()).map(|number| level(builder, &sides, number, cells, limited)).collect();
+        let is_open = options.most_cycles > options.cycles;
+        let made: Vec<Level> =
+            (0..sides.len()).map(|number| level(builder, (&sides, number), cells, limited, is_open)).collect();
         let packed = builder.buffer("fluence to look up", 8 * grid.count() as u64, Usage::STORAGE | Usage::COPY_DST);
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let mut kernel = |entry: &str, limited: bool| {
@@ -76,7 +82,8 @@ impl Levels {
             prolong: kernel("prolong", false)?,
             pack: kernel("pack", false)?,
         };
-        let residual_kernel = if options.residual { Some(kernel("residual", is_limited)?) } else { None };
+        let residual_kernel = if options.residual || is_open { Some(kernel("residual", is_limited)?) } else { None };
+        let stop = if is_open { Some(kernel("stop", false)?) } else { None };
         let of_level = |kernels: [PipelineId; 2], number: usize| kernels[number.min(1)];
         // What the flux limiter reads.
         let nodes = (4, cells.nodes.into());
@@ -125,7 +132,22 @@ impl Levels {
             let sums = builder.buffer("residuals", 32 * u64::from(tiles::count(grid.cells)), usage);
             residual = Some((sums, made[0].pass_over_tiles(builder, kernel, 0, &[(6, sums.into()), nodes])));
         }
-        Ok(Self { levels: made, residual, options, packed, coarsen, first, cycle, pack })
+        let mut further = Vec::new();
+        if let (Some(stop), Some((sums, measured))) = (stop, &residual) {
+            let opened = |dispatch: &Dispatch| {
+                let of_level = |level: &&Level| dispatch.workgroups == level.tiles.dispatched();
+                let open = made.iter().find(of_level).and_then(|level| level.open).map(Workgroups::Indirect);
+                Dispatch { workgroups: open.unwrap_or(dispatch.workgroups), ..dispatch.clone() }
+            };
+            further.push(opened(measured));
+            for open in made.iter().filter_map(|level| level.open) {
+                let groups =
+                    vec![builder.bind(stop, 0, &[(2, open.into())]), builder.bind(stop, 1, &[(6, (*sums).into())])];
+                further.push(builder.dispatch(stop, groups, Workgroups::Count([1, 1, 1])));
+            }
+            further.extend(cycle.iter().map(opened));
+        }
+        Ok(Self { levels: made, residual, options, packed, coarsen, first, cycle, further, pack })
     }
 
     /// The right side of the finest level's equations: four f32 for each voxel.
@@ -133,9 +155,9 @@ impl Levels {
         self.levels[0].right
     }
 
-    /// Number of cycles of a frame.
+    /// Largest number of cycles of a frame.
     pub(super) fn cycles(&self) -> u32 {
-        self.options.cycles
+        self.options.most_cycles
     }
 
     /// The fluence of the finest level: four f32 for each voxel.
@@ -163,8 +185,17 @@ impl Levels {
             builder.compute(RECIPE, self.first.clone(), 1);
         }
         builder.compute(RECIPE, self.cycle.clone(), self.options.cycles);
-        if let Some((sums, measured)) = &self.residual {
+        if let Some((sums, _)) = &self.residual {
             builder.clear(*sums);
+        }
+        if !self.further.is_empty() {
+            for level in &self.levels {
+                let copied = |to| Pass::Copy { from: level.tiles.workgroups, to, bytes: 12 };
+                level.open.into_iter().for_each(|open| builder.pass(copied(open)));
+            }
+            builder.compute(RECIPE, self.further.clone(), self.options.most_cycles - self.options.cycles);
+        }
+        if let Some((_, measured)) = self.residual.as_ref().filter(|_| self.options.residual) {
             builder.compute(RECIPE, vec![measured.clone()], 1);
         }
         builder.compute(RECIPE, vec![self.pack.clone()], 1);
@@ -172,7 +203,7 @@ impl Levels {
 
     /// The sums of which the residual is made; `None` unless the options ask for it.
     pub(super) fn residual_sums(&self) -> Option<Buffer> {
-        self.residual.as_ref().map(|(sums, _)| *sums)
+        self.residual.as_ref().filter(|_| self.options.residual).map(|(sums, _)| *sums)
     }
 
     /// Size of the buffers in bytes, except those of the finest level's cells.
@@ -200,7 +231,13 @@ struct Kernels {
 }
 
 /// Creates the buffers of the level with this number; the finest has the equations of `cells`.
-fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells, limited: Option<Vec3>) -> Level {
+fn level(
+    builder: &mut Builder<'_>,
+    (sides, number): (&[u32], usize),
+    cells: &Cells,
+    limited: Option<Vec3>,
+    is_open: bool,
+) -> Level {
     use wgpu::BufferUsages as Usage;
     let side = sides[number];
     let voxels = u64::from(side).pow(3);
@@ -222,7 +259,10 @@ fn level(builder: &mut Builder<'_>, sides: &[u32], number: usize, cells: &Cells,
             [("conductances", 12), ("losses", 16)].map(|(what, bytes)| storage(what, bytes * voxels));
         (faces, reactions, Tiles::new(builder, side, number))
     };
-    Level { cells: side, tiles, faces, reactions, fluence, right, records }
+    let usage = Usage::STORAGE | Usage::COPY_DST | Usage::INDIRECT;
+    let name = format!("tiles left to solve of level {number}");
+    let open = is_open.then(|| builder.buffer(&name, 12, usage));
+    Level { cells: side, tiles, faces, reactions, fluence, right, records, open }
 }
 
 impl Level {
