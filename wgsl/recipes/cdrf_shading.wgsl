@@ -64,7 +64,7 @@ struct CdrfView {
 }
 
 struct CdrfMaterial {
-    // Diffuse reflectance of the surface, linear RGB.
+    // Diffuse reflectance of the surface, linear RGB; of matter with coefficients that of a half space of it.
     base_color: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
@@ -95,6 +95,8 @@ struct CdrfMaterial {
     cutoff: f32,
     // 0 to 1, another one for each body: which samples cover.
     shift: f32,
+    // Colour of the light that does not enter, relative to `base_color`.
+    rest: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -515,7 +517,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
             }
         }  //+translucent_shadow
         if (EFFECT_PARTIAL_TRANSMISSION) {
-            reflectance = mix(opaque, reflectance, surface.transmission);
+            reflectance = mix(material.rest * opaque, reflectance, surface.transmission);
         }
         if (EFFECT_COLORED_SHADOW) {
             reflectance *= stone_shadow_of_light(index, input.position);
@@ -548,7 +550,9 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
         }
         if (EFFECT_PARTIAL_TRANSMISSION) {
             irradiance = mix(
-                cdrf_around(harmonics_around(normals.sharp), vec3f(0.0f)), irradiance, surface.transmission
+                material.rest * cdrf_around(harmonics_around(normals.sharp), vec3f(0.0f)),
+                irradiance,
+                surface.transmission,
             );
         }
         received += irradiance;

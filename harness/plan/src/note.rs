@@ -1,7 +1,8 @@
 //! Warnings about a picture that the picture itself does not show.
 
 use super::Rung;
-use super::numbers::short;
+use super::numbers::{short, triple};
+use glam::Vec3;
 use std::fmt;
 
 /// Number of clear bodies around a point that the rungs scene-HITS follow.
@@ -139,6 +140,13 @@ pub enum Note {
         /// What is left out, by its name in the file.
         what: Vec<&'static str>,
     },
+    /// Scattering bodies whose base colour is not the one that their coefficients have.
+    OtherColor {
+        /// The objects concerned.
+        objects: Objects,
+        /// The colour of the coefficients.
+        color: Vec3,
+    },
     /// Clear bodies under a rung that shows no lights.
     LightsNotSeen {
         /// The objects concerned.
@@ -229,6 +237,7 @@ impl Note {
             | Self::AllEnters { .. }
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
+            | Self::OtherColor { .. }
             | Self::NotCompared { .. }
             | Self::TooDeep { .. }
             | Self::LampInside { .. }
@@ -339,6 +348,11 @@ impl fmt::Display for Note {
                 "{objects}: {within} clear bodies lie within one another there, of which rung `{rung}` follows {MOST_AROUND}; --rung reference \
                  follows 12"
             ),
+            Self::OtherColor { objects, color } => write!(
+                f,
+                "{objects}: its coefficients of scattering and absorption decide its colour, {}, not its base colour",
+                triple(*color)
+            ),
             Self::LightsNotSeen { objects, rung } => {
                 write!(f, "{objects}: rung `{rung}` shows no lights on a clear body; add --with light")
             }
@@ -421,6 +435,10 @@ mod tests {
                     what: vec!["roughnessFactor", "transmissionFactor"],
                 },
                 "polished and all of it clear, without its roughnessFactor and transmissionFactor",
+            ),
+            line_of(
+                Note::OtherColor { objects: objects(1), color: Vec3::new(0.7, 0.5, 0.25) },
+                "colour, (0.7, 0.5, 0.25), not",
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
             line_of(Note::TooDeep { objects: objects(1), within: 6, rung }, "6 clear bodies lie within one another"),

@@ -82,6 +82,7 @@ impl Case<'_> {
         if is_followed && self.object.mesh.encloses(self.scene.camera.eye) {
             notes.push(Note::EyeWithin { objects: objects.clone(), rung });
         }
+        notes.extend(self.other_color(&objects));
         notes.extend(self.polished(&objects));
         let lit = is_followed && !self.scene.lights.is_empty();
         if lit && !self.shows_lights {
@@ -95,6 +96,15 @@ impl Case<'_> {
         notes.extend(self.black(&objects));
         notes.extend(self.white(&objects, around));
         notes
+    }
+
+    /// Returns a note if a scattering body's coefficients have another colour than its base colour, unless that is white, as
+    /// of a file that names none.
+    fn other_color(&self, objects: &Objects) -> Option<Note> {
+        let Object { mesh, material, .. } = self.object;
+        let color = thickness::color(material, &mesh.colors);
+        let differs = (color - material.base_color).abs().max_element() > MOST_OTHER;
+        (material.base_color != Vec3::ONE && differs).then(|| Note::OtherColor { objects: objects.clone(), color })
     }
 
     /// Returns a note if a clear body is rough or not wholly clear, and its rung does not draw that.
@@ -202,12 +212,16 @@ impl Case<'_> {
             });
             radiance += arriving.sum::<DVec3>() / PI;
         }
-        let shown = (self.request.exposure * radiance.as_vec3() * material.base_color).min(Vec3::splat(f32::MAX));
+        let shown = (self.request.exposure * radiance.as_vec3() * thickness::color(material, &mesh.colors))
+            .min(Vec3::splat(f32::MAX));
         let encoded = lapidary_srgb::encode_color(lapidary_srgb::tone_curve(shown.min(Vec3::splat(1e9))));
         (encoded.min_element() >= WHITE)
             .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.max_element() })
     }
 }
+
+/// How far a part of a scattering body's base colour may be from that of its coefficients.
+const MOST_OTHER: f32 = 0.05;
 
 /// Number of rows of directions from pole to pole; there are twice as many columns.
 const ROWS: u32 = 64;

@@ -133,6 +133,16 @@ pub fn albedo(material: &Material) -> Option<Vec3> {
     Some(Vec3::select(extinction.cmpgt(Vec3::ZERO), scattering / extinction, Vec3::ZERO))
 }
 
+/// Returns the colour of a scattering body: the reflectance of a half space of its medium without a boundary; the base colour
+/// if it has no medium, or if an image or `colors` of the mesh say where it has which.
+#[must_use]
+pub fn color(material: &Material, colors: &[Vec3]) -> Vec3 {
+    let is_even = material.base_color_texture.is_none() && colors.is_empty();
+    let of_albedo = |albedo| lapidary_half_space::reflectance(lapidary_half_space::gamma(albedo, 0.0));
+    let of_medium = albedo(material).filter(|_| is_even).map(|albedo| albedo.map(of_albedo));
+    of_medium.unwrap_or(material.base_color)
+}
+
 /// Returns the transport mean free path for red, green and blue, in units of length: the medium's, or else
 /// that of the matter that has the material's base color and `sigma0`; `None` if it has neither.
 #[must_use]

@@ -51,6 +51,7 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
         {
             Some(objects)
         }
+        (Note::OtherColor { objects, color }, Note::OtherColor { color: other, .. }) if color == other => Some(objects),
         _ => None,
     });
     match known {

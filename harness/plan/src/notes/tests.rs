@@ -238,3 +238,13 @@ fn a_camera_inside_a_clear_body_is_named() {
     one(&scene, &usual(), "object `ruby`: the camera stands inside");
     assert_eq!(said(&scene, &by("reference")), [""; 0]);
 }
+
+#[test]
+fn a_base_color_beside_other_coefficients_is_named() {
+    let mut scene = named("wax");
+    assert_eq!(said(&scene, &usual()), [""; 0]);
+    scene.objects[0].material.base_color = glam::Vec3::new(0.2, 0.5, 0.9);
+    one(&scene, &usual(), "coefficients of scattering and absorption decide its colour, (0.891, 0.8");
+    scene.objects[0].material.base_color = glam::Vec3::ONE;
+    assert_eq!(said(&scene, &usual()), [""; 0]);
+}

@@ -89,7 +89,7 @@ fn matte(object: &Object, scene: &Scene, around: &[DVec3; harmonics::COUNT]) -> 
         }
     }
     let share = if area > 0.0 { area.recip() } else { 0.0 };
-    let albedo = object.material.base_color.as_dvec3() / PI;
+    let albedo = lapidary_plan::thickness::color(&object.material, &object.mesh.colors).as_dvec3() / PI;
     let weights: Vec<f64> = harmonics::weights().collect();
     std::array::from_fn(|place| weights[place] * albedo * (around[place] + share * arriving[place]))
 }

@@ -6,7 +6,7 @@ use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
 use glam::{UVec4, Vec3, Vec4};
-use lapidary_plan::{Effect, Outside};
+use lapidary_plan::{Effect, Outside, thickness};
 use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, precedence};
 use std::cell::OnceCell;
 use std::cmp::Reverse;
@@ -173,7 +173,8 @@ fn record(material: &Material) -> Record {
     // What scatters is matte here.
     let clear = if material.is_clear() { material.clear_share() } else { 1.0 - material.covered_share() };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
-    let record = Record::new("SceneBody").with("base_color", material.base_color).with("index", material.ior);
+    let color = if material.is_clear() { material.base_color } else { thickness::color(material, &[]) };
+    let record = Record::new("SceneBody").with("base_color", color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
     record.with("alpha", material.facet_slope()).with("clear", clear)
 }

@@ -117,7 +117,8 @@ fn add(
     // Multiples of the golden ratio lie far from each other.
     let number = light.0.scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
     let shift = (number as f32 * 0.618_034).fract();
-    let record = builder.record("material", record_of(material, decisions, shift));
+    let color = thickness::color(material, &mesh.colors);
+    let record = builder.record("material", record_of((material, color), decisions, shift));
     let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
@@ -162,9 +163,9 @@ fn add(
 }
 
 /// Fills `CdrfMaterial` of the recipe.
-fn record_of(material: &Material, decisions: &Decisions, shift: f32) -> Record {
+fn record_of((material, color): (&Material, Vec3), decisions: &Decisions, shift: f32) -> Record {
     let sigma0 = safe_sigma0(material);
-    let record = Record::new("CdrfMaterial").with("base_color", material.base_color).with("index", material.ior);
+    let record = Record::new("CdrfMaterial").with("base_color", color).with("index", material.ior);
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
     let record = record.with("alpha", material.roughness * material.roughness);
     let record = record.with("free_path", safe(thickness::free_path(material)));
@@ -181,7 +182,11 @@ fn record_of(material: &Material, decisions: &Decisions, shift: f32) -> Record {
     let record = record
         .within("transmission_place", |record| textures::place(record, material.diffuse_transmission_texture.as_ref()));
     let Coverage { share, cutoff } = material.coverage.unwrap_or(Coverage { share: 1.0, cutoff: None });
-    record.with("coverage", share).with("cutoff", cutoff.unwrap_or(-1.0)).with("shift", shift)
+    record
+        .with("coverage", share)
+        .with("cutoff", cutoff.unwrap_or(-1.0))
+        .with("shift", shift)
+        .with("rest", material.base_color / color.max(Vec3::splat(1e-6)))
 }
 
 /// Returns the material's widths, made safe.

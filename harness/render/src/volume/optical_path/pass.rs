@@ -19,7 +19,7 @@ use crate::volume::solver::{Solve, Solved, Solver};
 use crate::volume::voxel_grid::VoxelGrid;
 use crate::volume::voxelization::Voxelizer;
 use glam::Vec3;
-use lapidary_plan::{Decisions, Effect};
+use lapidary_plan::{Decisions, Effect, thickness};
 use lapidary_scene::solver::Paths;
 use lapidary_scene::{Bounds, Density, Material, Object};
 use std::f32::consts::FRAC_1_PI;
@@ -92,7 +92,9 @@ impl Add<'_> {
             Some(seeds) => Some(self.paths(builder, drawn, seeds, grid, extinction, shape)?),
             None => None,
         };
-        let record = builder.record("material", record_of(grid, (material, decisions), extinction, self.largest));
+        let color = thickness::color(material, &mesh.colors);
+        let record =
+            builder.record("material", record_of(grid, (material, color, decisions), extinction, self.largest));
         let MeshBuffers { shape: ShapeBuffers { positions, indices, vertices }, normals } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
@@ -164,12 +166,12 @@ fn extinction(material: &Material, settings: &Settings) -> Vec3 {
 /// Fills `OpticalPathBody` of the recipe.
 fn record_of(
     grid: VoxelGrid,
-    (material, decisions): (&Material, &Decisions),
+    (material, color, decisions): (&Material, Vec3, &Decisions),
     extinction: Vec3,
     largest: Vec3,
 ) -> Record {
     let record = Record::new("OpticalPathBody").within("grid", |record| grid.fill(record));
-    let record = record.with("base_color", material.base_color).with("index", material.ior);
+    let record = record.with("base_color", color).with("index", material.ior);
     let record = record.with("extinction", extinction).with("alpha", material.roughness * material.roughness);
     let record = record.with("largest", largest);
     record.within("law", |record| ScatteringLaw::of_object(material, decisions).fill(record))
