@@ -1,6 +1,6 @@
 // microfacet: a rough dielectric's highlight: Cook and Torrance's reflectance, Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.3.0
+// Version: 0.2.0
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
 //   Surfaces", 2007, eq. (20), (33); Heitz, "Understanding the Masking-Shadowing Function in
 //   Microfacet-Based BRDFs", 2014, eq. (72), (99); Lagrange's identity for the squared sine: Guy

@@ -128,6 +128,7 @@ pub(super) const WORKGROUPS: &[(&str, Workgroups)] = &[
     ("diffusion_cells_large", ("32", |_| [32, 1, 1])),
     ("diffusion_cells_fill", ("⌈n³ / 2048⌉", |q| [cube(q.n).div_ceil(2048), 1, 1])),
     ("diffusion_cells_list", ("⌈(n / 4)³ / 64⌉", |q| [tiles(q).div_ceil(64), 1, 1])),
+    ("diffusion_solve_stop", ("1", |_| [1, 1, 1])),
     ("diffusion_solve_list", ("⌈(n / 4)³ / 64⌉", |q| [tiles(q).div_ceil(64), 1, 1])),
     ("diffusion_source_texel", ("⌈texels / 8⌉ × ⌈texels / 8⌉ × views", texel_groups)),
 ];
