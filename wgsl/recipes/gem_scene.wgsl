@@ -476,13 +476,13 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         if (body.kind == SCENE_OPAQUE && enters) {
             let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
             let sent = scene_sent(body.base_color, ray.position, normal);
+            var covered = ray.throughput;
             if (EFFECT_COVERAGE) {
-                scene_found += (1.0f - body.clear) * ray.throughput * sent;
+                covered = (1.0f - body.clear) * ray.throughput;
                 ray.throughput *= body.clear;
                 scene_wait(ray);
-            } else {
-                scene_found += ray.throughput * sent;
             }
+            scene_found += covered * sent;
             passes = false;
         }
     }

@@ -128,7 +128,7 @@ pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2])
 
 /// Returns the first body that is seen undistorted through a clear one, between two parallel faces: one that is not clear,
 /// and overlaps it in a picture of this size.
-pub(crate) fn seen_straight<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
+fn seen_straight<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
     static FOUND: Remembered<bool> = Remembered::new();
     let other = overlapping(object, scene, size, false)?;
     FOUND.of(object.shape(), has_parallel_faces).then_some(other)
@@ -160,8 +160,16 @@ fn overlapping<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2], clear: 
     found.map(|(other, _)| other)
 }
 
+/// Returns why bodies that are not clear are seen in or through a clear one by their triangles; `None` if their bounds will do.
+pub(crate) fn beside(object: &Object, scene: &Scene, size: [u32; 2]) -> Option<String> {
+    if let Some(other) = seen_straight(object, scene, size) {
+        return Some(format!("{} is seen straight through its parallel faces", other.name));
+    }
+    stands_in(object, scene).map(|around| format!("it stands within the bounds of {}", around.name))
+}
+
 /// Returns the first body that is not clear and whose box reaches around a clear one's middle.
-pub(crate) fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
     let middle = bounds(object).centre();
     let reaches = |bounds: &Bounds| bounds.min.cmple(middle).all() && bounds.max.cmpge(middle).all();
     let found = others(object, scene).find(|(other, bounds)| !other.material.is_clear() && reaches(bounds));

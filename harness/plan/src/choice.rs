@@ -75,14 +75,12 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
     let stands = request.quality != Quality::Fast && has(Effect::Around);
-    if !stands {
+    // What leaves a convex body is looked for by the effect `around` alone.
+    let walks = Shape::of(object.shape()) == Shape::Convex && object.copies.is_none();
+    if !stands || !inside || walks {
         return None;
     }
-    if let Some(other) = among::seen_straight(object, scene, request.size).filter(|_| inside) {
-        return Some(format!("{} is seen straight through its parallel faces", other.name));
-    }
-    let around = among::stands_in(object, scene).filter(|_| inside)?;
-    Some(format!("it stands within the bounds of {}", around.name))
+    among::beside(object, scene, request.size)
 }
 
 /// Returns the technique for a clear body with an inside, and the reason. The proxy is never

@@ -302,11 +302,29 @@ impl Case<'_> {
 
     fn around(&self) -> Answer {
         match self.scene.beside_stones().count() {
-            _ if !self.is_among() => off(format!("the rung {} follows light through one body", self.rung)),
+            _ if !self.is_among() => self.around_one(),
             0 => off("all bodies are clear"),
             _ if self.request.outside == Some(Outside::Environment) => off("asked for: environment"),
             1 => on("beside 1 body that is not clear"),
             count => on(format!("beside {count} bodies that are not clear")),
+        }
+    }
+
+    /// The same under a rung that follows light through one body: what leaves that meets triangles.
+    fn around_one(&self) -> Answer {
+        let walks = self.rung.geometry_of_inside() == Some(Geometry::Walk);
+        match self.request.outside {
+            _ if !walks => off(format!("the rung {} follows light through one body", self.rung)),
+            Some(Outside::Triangles) | None
+                if matches!(self.rung.spectrum(), Spectrum::Separate(_)) || self.instances().0 =>
+            {
+                off("the stage reads as many buffers as devices offer")
+            }
+            Some(Outside::Triangles) => self.meets("asked for, ", usize::MAX),
+            Some(other) => off(format!("asked for: {other}")),
+            None if self.request.quality == Quality::Fast => off("quality fast"),
+            None => among::beside(self.object, self.scene, self.request.size)
+                .map_or_else(|| off("no body stands around it, or is seen straight through it"), on),
         }
     }
 
@@ -391,6 +409,7 @@ impl Case<'_> {
         match self.request.outside {
             _ if !self.is_gem() => off(self.not_clear()),
             _ if self.is_among() => off("light meets bodies by their triangles"),
+            _ if self.around().0 => off("light meets bodies by their triangles"),
             Some(Outside::Bodies) => self.meets("asked for, ", MOST_BODIES),
             Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),

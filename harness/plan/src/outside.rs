@@ -18,11 +18,13 @@ pub enum Outside {
     Screen,
     /// The bounds of a few other bodies.
     Bodies,
+    /// The triangles of other bodies.
+    Triangles,
 }
 
 impl Outside {
     /// Every way, from cheap to dear.
-    pub const ALL: [Self; 3] = [Self::Environment, Self::Bodies, Self::Screen];
+    pub const ALL: [Self; 4] = [Self::Environment, Self::Bodies, Self::Screen, Self::Triangles];
 
     /// Returns the effect that this way needs; `None` for the environment alone.
     #[must_use]
@@ -31,6 +33,7 @@ impl Outside {
             Self::Environment => None,
             Self::Bodies => Some(Effect::BoundsTrace),
             Self::Screen => Some(Effect::ScreenTrace),
+            Self::Triangles => Some(Effect::Around),
         }
     }
 
@@ -41,6 +44,7 @@ impl Outside {
             Self::Environment => "environment",
             Self::Screen => "screen",
             Self::Bodies => "bodies",
+            Self::Triangles => "triangles",
         }
     }
 }

@@ -12,3 +12,11 @@ fn gem_hit_both(
     let second = gem_hit(place_other, other);
     return GemHits(first, second);
 }
+
+// Light that leaves the stone meets triangles of other bodies: only by the recipe gem_walk.
+override EFFECT_AROUND: bool = false;
+
+// Nothing is met.
+fn beside_met(position: vec3f, direction: vec3f) -> vec4f {
+    return vec4f(0.0f, 0.0f, 0.0f, -1.0f);
+}

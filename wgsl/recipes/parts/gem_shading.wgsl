@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts surroundings, bodies, lights, glints and screen, and mesh if it reads one; struct
+// A geometry recipe adds: the parts surroundings, bodies, beside, lights, glints and screen, and mesh if it reads one; struct
 // GemVertex, whose members include `position`, `face_normal` and, with instances, `instance`; the entry
 // point gem_vertex; struct GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
 // gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
@@ -191,7 +191,7 @@ fn gem_world_position(position: vec3f) -> vec3f {
 struct GemMeeting {
     // Distance of a body that the picture shows, in lengths of the direction; below 0 if there is none.
     distance: f32,
-    // Whether a body's bounds are met, and the radiance that it sends.
+    // Whether a body's triangles or bounds are met, and the radiance that it sends.
     is_bounded: bool,
     bounded: vec3f,
 }
@@ -201,6 +201,11 @@ fn gem_meeting(position: vec3f, direction: vec3f) -> GemMeeting {
     var meeting = GemMeeting(-1.0f, false, vec3f(0.0f));
     if (EFFECT_SCREEN_TRACE) {
         meeting.distance = screen_distance(gem_world_position(position), gem_world_direction(direction));
+    }
+    if (EFFECT_AROUND) {
+        let met = beside_met(gem_world_position(position), gem_world_direction(direction));  //+around
+        meeting.is_bounded = met.w >= 0.0f;  //+around
+        meeting.bounded = met.rgb;  //+around
     }
     if (EFFECT_BOUNDS_TRACE) {
         let hit = bodies_hit(gem_world_position(position), gem_world_direction(direction));
@@ -223,10 +228,8 @@ fn gem_arriving(meeting: GemMeeting, position: vec3f, direction: vec3f) -> vec3f
             }
         }
     }
-    if (EFFECT_BOUNDS_TRACE) {
-        if (meeting.is_bounded) {
-            return meeting.bounded;
-        }
+    if (meeting.is_bounded) {
+        return meeting.bounded;
     }
     if (EFFECT_LIGHT) {
         return gem_lit(gem_world_position(position), gem_world_direction(direction));  //+light

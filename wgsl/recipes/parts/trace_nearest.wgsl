@@ -125,12 +125,9 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     }
     var next = 0u;
     var height = 0u;
-    var found = true;
-    if (TRAVERSAL_TWO_SIDED) {
-        // Invocations beside a triangle's edge may read zeros: a root whose children are the root. Where a
-        // recipe computes rays from what it reads, they would turn in this loop for ever.
-        found = any(whole.lower < whole.upper);
-    }
+    // Invocations beside a triangle's edge may read zeros: a root whose children are the root. Where a
+    // recipe computes rays from what it reads, they would turn in this loop for ever.
+    var found = any(whole.lower < whole.upper);
     while (found) {
         // Down to a leaf. Rays that run side by side wait here for the last one, so that they test
         // boxes together and then triangles together.

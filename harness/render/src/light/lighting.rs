@@ -1,6 +1,7 @@
 //! Light on a scene: its lights and the environment, as the recipes bind them. Each is added to the
 //! frame when the first pipeline reads it, and only once.
 
+use super::beside::{self, Beside};
 use super::environment;
 use super::from_bodies::{self, Body};
 use super::hierarchy::Hierarchy;
@@ -30,6 +31,7 @@ pub(crate) struct Lighting<'a> {
     screen: OnceCell<Picture>,
     bodies: OnceCell<Buffer>,
     hierarchy: OnceCell<Hierarchy>,
+    beside: OnceCell<Beside>,
     glints: OnceCell<Buffer>,
     /// What keeps light from others.
     pub(crate) shapes: Shapes,
@@ -42,7 +44,7 @@ impl<'a> Lighting<'a> {
     /// size in samples.
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
         let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
-        let (hierarchy, glints) = Default::default();
+        let (hierarchy, beside, glints) = Default::default();
         Self {
             scene,
             settings,
@@ -53,6 +55,7 @@ impl<'a> Lighting<'a> {
             screen,
             bodies,
             hierarchy,
+            beside,
             glints,
             shapes,
             size,
@@ -101,6 +104,15 @@ impl<'a> Lighting<'a> {
         }
         let made = Hierarchy::new(builder, self.scene, self.settings)?;
         Ok(self.hierarchy.get_or_init(|| made))
+    }
+
+    /// Returns the triangles of the bodies that are not clear.
+    fn beside(&self, builder: &mut Builder<'_>) -> Result<Beside, RenderError> {
+        if let Some(known) = self.beside.get() {
+            return Ok(*known);
+        }
+        let made = Beside::new(builder, self.scene, self.around())?;
+        Ok(*self.beside.get_or_init(|| made))
     }
 
     /// Returns the environment's texture.
@@ -152,7 +164,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 16 of group 0; 4, 5
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 18 of group 0; 4, 5
     /// and 10 are shadow maps, 6 is the view of the screen.
     pub(crate) fn shared(
         &self,
@@ -178,6 +190,10 @@ impl<'a> Lighting<'a> {
         }
         if builder.binds(pipeline, 0, GLINTS) {
             shared.push((GLINTS, self.glints(builder).into()));
+        }
+        if builder.binds(pipeline, 0, beside::BINDINGS[0]) {
+            let Beside { nodes, corners } = self.beside(builder)?;
+            shared.extend(beside::BINDINGS.into_iter().zip([nodes.into(), corners.into()]));
         }
         if Hierarchy::is_read(builder, pipeline) {
             shared.extend(self.hierarchy(builder)?.shared(builder, pipeline));

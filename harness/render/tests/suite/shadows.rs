@@ -140,7 +140,7 @@ fn texel(scene: &Scene, light: &Light, point: DVec3) -> f64 {
 
 fn compared(scene: &Scene, light: &Light, pixels: &[[f32; 4]]) -> Vec<Compared> {
     let triangles = Triangles::of(scene);
-    let base = f64::from(scene.objects[0].material.base_color.x);
+    let base = f64::from(lapidary_plan::thickness::color(&scene.objects[0].material, &[]).x);
     let eye = scene.camera.eye.as_dvec3();
     let picture = render::Picture {
         width: SIDE,
@@ -428,9 +428,7 @@ fn light_comes_through_a_body_as_through_a_slab() {
             let gamma = lapidary_half_space::gamma(albedo[channel], 0.0);
             let depth = 1.3 * 2.0 * radius as f32 / path[channel];
             let passed = lapidary_diffusion::slab(depth, gamma, lapidary_diffusion::DIFFUSION_MILNE);
-            // The base color is a factor on what fits the medium.
-            let color = f64::from(material.base_color[channel] / lapidary_half_space::reflectance(gamma));
-            let expected = color * irradiance / PI * f64::from(passed * lapidary_half_space::exit(1.0, gamma));
+            let expected = irradiance / PI * f64::from(passed * lapidary_half_space::exit(1.0, gamma));
             let found = f64::from(with[channel]);
             println!(
                 "{light:?}, radius {radius}, channel {channel}: {found:.5}, {expected:.5}, {:.5}",

@@ -1,0 +1,84 @@
+//! The triangles of a scene's bodies that are not clear and what they send, as the part `beside` reads them.
+
+use crate::error::RenderError;
+use crate::frame::{Buffer, Builder};
+use glam::{DVec3, Vec3, Vec4};
+use lapidary_plan::thickness;
+use lapidary_scene::{Bvh, Mesh, Scene, harmonics};
+use std::f64::consts::PI;
+
+/// Bindings in group 0: the nodes, and the corners.
+pub(crate) const BINDINGS: [u32; 2] = [17, 18];
+
+/// The hierarchy in a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Beside {
+    pub(crate) nodes: Buffer,
+    pub(crate) corners: Buffer,
+}
+
+impl Beside {
+    /// Adds the bodies to the frame, lit by the scene's lights and an environment of these harmonics, without shadows, by
+    /// Lambert's law.
+    ///
+    /// # Errors
+    /// If they are beyond the limits that every device offers.
+    pub(crate) fn new(
+        builder: &mut Builder<'_>,
+        scene: &Scene,
+        around: &[DVec3; harmonics::COUNT],
+    ) -> Result<Self, RenderError> {
+        let (mut positions, mut sent, mut indices) = (Vec::new(), Vec::new(), Vec::new());
+        for object in scene.beside_stones() {
+            let color = thickness::color(&object.material, &object.mesh.colors).as_dvec3() / PI;
+            for corners in triangles(&object.mesh) {
+                for (position, normal) in corners {
+                    let lights = scene.lights.iter().map(|light| {
+                        let arrival = light.arrival(position.as_dvec3());
+                        arrival.direction.dot(normal.as_dvec3()).max(0.0) * arrival.irradiance
+                    });
+                    let irradiance = harmonics::irradiance(around, normal.as_dvec3()) + lights.sum::<DVec3>();
+                    positions.push(position);
+                    sent.push((color * irradiance).as_vec3());
+                }
+                let last = positions.len() as u32;
+                // From inside, as a ray meets them that leaves a solid.
+                indices.extend([last - 3, last - 1, last - 2]);
+            }
+        }
+        let largest = sent.iter().copied().fold(Vec3::splat(f32::MIN_POSITIVE), Vec3::max);
+        let bvh = Bvh::build(&positions, &indices);
+        let mut corners = bvh.corners.clone();
+        for (corner, index) in corners.iter_mut().zip(&bvh.indices) {
+            corner.w = packed(sent[*index as usize] / largest);
+        }
+        corners.push(largest.extend(0.0));
+        let limits = wgpu::Limits::default();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let bytes = (corners.len() * size_of::<Vec4>()) as u64;
+        if bytes > limit {
+            return Err(RenderError::TooLarge { what: "the triangles beside stones".to_owned(), bytes, limit });
+        }
+        let words = bvh.words();
+        Ok(builder.of_object("", |builder| Self {
+            nodes: builder.storage("nodes beside", bytemuck::cast_slice(&words)),
+            corners: builder.storage("corners beside", bytemuck::cast_slice(&corners)),
+        }))
+    }
+}
+
+/// Packs shares of 0 to 1 as the part reads them: a whole number below 2^24.
+fn packed(share: Vec3) -> f32 {
+    let [red, green, blue] = (255.0 * share.map(f32::sqrt)).round().to_array();
+    red + 256.0 * green + 65536.0 * blue
+}
+
+/// Returns the positions and normals of each triangle's corners.
+fn triangles(mesh: &Mesh) -> impl Iterator<Item = [(Vec3, Vec3); 3]> {
+    mesh.indices.chunks_exact(3).map(|triangle| {
+        let [a, b, c] = [0, 1, 2].map(|corner| mesh.positions[triangle[corner] as usize]);
+        let flat = (b - a).cross(c - a).normalize_or_zero();
+        let normal = |index: u32| mesh.normals.get(index as usize).map_or(flat, |normal| normal.normalize_or(flat));
+        [(a, normal(triangle[0])), (b, normal(triangle[1])), (c, normal(triangle[2]))]
+    })
+}

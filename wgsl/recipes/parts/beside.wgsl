@@ -1,0 +1,36 @@
+// beside: what a ray that leaves a stone meets among the triangles of bodies that are not clear.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: the module bvh_trace.
+//
+// A recipe adds: the module bvh_trace and the part trace_nearest, which reads what is bound here.
+
+// Rays that leave meet the triangles of bodies that are not clear. Called for by a body around the stone.
+override EFFECT_AROUND: bool = false;
+
+//+around {
+// The root is first.
+@group(0) @binding(17) var<storage, read> nodes: array<BvhTraceNode>;
+// Three per triangle, clockwise from outside, in the order of the leaves: a ray from outside then leaves
+// through them. w is the radiance that the surface sends there, of any direction: shares of the largest, as roots
+// in steps of 1/255, red + 256 green + 65536 blue. The largest follows the last triangle.
+@group(0) @binding(18) var<storage, read> corners: array<vec4f>;
+
+fn beside_share(packed: f32) -> vec3f {
+    let number = u32(packed);
+    let roots = vec3f((vec3u(number) >> vec3u(0u, 8u, 16u)) & vec3u(255u)) / 255.0f;
+    return roots * roots;
+}
+
+// Radiance that arrives along a ray from what it meets, and the distance; below 0 if it meets nothing.
+fn beside_met(position: vec3f, direction: vec3f) -> vec4f {
+    let hit = trace_nearest(position, direction, BVH_TRACE_NONE);
+    if (hit.triangle == BVH_TRACE_NONE) {
+        return vec4f(0.0f, 0.0f, 0.0f, -1.0f);
+    }
+    let first = 3u * hit.triangle;
+    let share = (1.0f - hit.barycentrics.x - hit.barycentrics.y) * beside_share(corners[first].w)
+        + hit.barycentrics.x * beside_share(corners[first + 1u].w)
+        + hit.barycentrics.y * beside_share(corners[first + 2u].w);
+    return vec4f(corners[arrayLength(&corners) - 1u].rgb * share, hit.distance);
+}
+//+around }
