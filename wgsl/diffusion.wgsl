@@ -64,7 +64,8 @@ const DIFFUSION_FARTHEST: f32 = 1e15f;
 fn diffusion_milne(relative_index: f32) -> f32 {
     let x = clamp(relative_index, 1.0f, DIFFUSION_DENSEST) - 1.0f;
     let s = sqrt(x);
-    let slope = 0.8625412f + s * (4.655942f + s * (1.148223f + s * (s * (2.949771f + s * (s * 0.1045422f - 0.9277547f)) - 2.400274f)));
+    let far = 2.949771f + s * (s * 0.1045422f - 0.9277547f);
+    let slope = 0.8625412f + s * (4.655942f + s * (1.148223f + s * (s * far - 2.400274f)));
     return DIFFUSION_MILNE * (1.0f + x * slope);
 }
 

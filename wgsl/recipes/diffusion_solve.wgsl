@@ -39,7 +39,7 @@ const DIFFUSION_TURNS: u32 = 6u;
 override DIFFUSION_LIMITED: bool = false;
 
 // What may be left of the equations, as a share of their right side.
-override DIFFUSION_ENOUGH: f32 = 1e-3f;
+override DIFFUSION_ENOUGH: f32 = 0.001f;
 
 struct DiffusionLevel {
     // Cells along an edge.

@@ -61,8 +61,8 @@ pub const DIFFUSION_FARTHEST: f32 = 1e15;
 pub fn milne(relative_index: f32) -> f32 {
     let x = relative_index.clamp(1.0, DIFFUSION_DENSEST) - 1.0;
     let s = x.sqrt();
-    let slope =
-        0.8625412 + s * (4.655942 + s * (1.148223 + s * (s * (2.949771 + s * (s * 0.1045422 - 0.9277547)) - 2.400274)));
+    let far = 2.949771 + s * (s * 0.1045422 - 0.9277547);
+    let slope = 0.8625412 + s * (4.655942 + s * (1.148223 + s * (s * far - 2.400274)));
     DIFFUSION_MILNE * (1.0 + x * slope)
 }
 

@@ -12,5 +12,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod generator;
 pub mod random_walk;
 pub mod spectral;

@@ -22,7 +22,7 @@ pub use boundary::Boundary;
 pub use estimate::Rendering;
 pub use pass::Origin;
 
-use super::generator;
+use crate::generator::generator;
 use estimate::{Estimate, Sums};
 use lapidary_scene::mesh_diagnosis::open_edges;
 use lapidary_scene::view::View;

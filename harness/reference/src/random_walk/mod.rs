@@ -13,9 +13,10 @@ mod sphere;
 
 pub use sphere::{BINS, Profile, profile};
 
+use crate::generator::generator;
 use glam::DVec3;
+use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
-use rand::{RngExt as _, SeedableRng as _};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -65,12 +66,6 @@ pub struct Exit {
     pub scatterings: u32,
     /// Length of the whole path.
     pub travelled: f64,
-}
-
-/// Returns the generator of a batch.
-pub(crate) fn generator(seed: u64, batch: u64) -> Xoshiro256PlusPlus {
-    // Neighbouring seeds give dissimilar states: the state is a hash of the seed.
-    Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ batch)
 }
 
 /// Samples all directions uniformly.

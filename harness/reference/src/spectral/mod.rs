@@ -34,7 +34,7 @@ mod within;
 
 pub use geometry::Geometry;
 
-use crate::random_walk::generator;
+use crate::generator::generator;
 use geometry::Bodies;
 use glam::{DMat3, DVec3};
 use lapidary_absorption::oracle as absorption;

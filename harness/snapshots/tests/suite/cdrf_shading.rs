@@ -171,7 +171,7 @@ fn light_creeps_further_on_smaller_spheres_and_red_further_than_blue() {
 fn the_environment_is_the_integral_of_the_spherical_form() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
     let scene = Scene { lights: Vec::new(), ..ball(10.0, Vec3::new(8.0, 3.0, 0.0)) };
-    let albedo = scene.objects[0].material.base_color.as_dvec3();
+    let albedo = lapidary_plan::thickness::color(&scene.objects[0].material, &[]).as_dvec3();
     for at_vertices in lapidary_testing::sampled([false, true], 2) {
         let lit = |environment: &Environment| Settings {
             without: Effects::SHEEN,

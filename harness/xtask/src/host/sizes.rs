@@ -49,6 +49,8 @@ pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
     (&["planes"], "gem", Rule::Each("facets")),
     (&["face_of_triangle"], "gem", Rule::Bytes("4 × triangles", |q| 4 * q.triangles)),
     (&["facet_map"], "gem_walk", Rule::Each("words of the map")),
+    (&["nodes"], "gem_walk", Rule::Each("nodes")),
+    (&["corners"], "gem_walk", Rule::Each("corners of the triangles beside the stone, and one more")),
     (&["nodes"], "gem_bvh", Rule::Each("nodes")),
     (&["nodes"], "trace", Rule::Each("nodes")),
     (&["corners"], "gem_bvh", Rule::Bytes("48 × triangles", |q| 48 * q.triangles)),

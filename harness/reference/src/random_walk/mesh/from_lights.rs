@@ -8,7 +8,7 @@ mod emission;
 use super::estimate::{Estimate, Sums};
 use super::pass::{Pass, stratum};
 use super::walk::{Beginnings, Matter, Ray};
-use crate::random_walk::generator;
+use crate::generator::generator;
 use emission::Emission;
 use glam::DVec3;
 use lapidary_scene::view::View;

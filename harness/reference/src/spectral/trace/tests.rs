@@ -1,5 +1,5 @@
 use super::*;
-use crate::random_walk::generator;
+use crate::generator::generator;
 use crate::spectral::geometry::Geometry;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};

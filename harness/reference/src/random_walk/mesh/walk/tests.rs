@@ -1,6 +1,7 @@
 use super::*;
 
-use crate::random_walk::{BINS, Profile, generator, in_disc, isotropic, profile};
+use crate::generator::generator;
+use crate::random_walk::{BINS, Profile, in_disc, isotropic, profile};
 use glam::{DQuat, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};

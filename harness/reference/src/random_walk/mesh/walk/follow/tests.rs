@@ -1,7 +1,8 @@
 use super::super::tests::{cuboid, estimate, grey, h, scene, seen, sun};
 use super::*;
+use crate::generator::generator;
 use crate::random_walk::mesh::Boundary;
-use crate::random_walk::{generator, half_space, in_disc, isotropic};
+use crate::random_walk::{half_space, in_disc, isotropic};
 use glam::{UVec3, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};

@@ -1,6 +1,7 @@
 use super::super::tests::{grey, scene, sun};
 use super::*;
-use crate::random_walk::{generator, isotropic};
+use crate::generator::generator;
+use crate::random_walk::isotropic;
 use crate::spectral::geometry::Geometry;
 use glam::DQuat;
 use lapidary_scene::Mesh;
