@@ -28,13 +28,14 @@ const VIEWS: [(f32, f32); 3] = [(60.0, 12.0), (35.0, -25.0), (78.0, 40.0)];
 const REFERENCE_SAMPLES: u32 = 4;
 
 /// The ways, each with the steps over the picture.
-const WAYS: [(Outside, u32); 6] = [
+const WAYS: [(Outside, u32); 7] = [
     (Outside::Environment, SCREEN_STEPS),
     (Outside::Bodies, SCREEN_STEPS),
     (Outside::Screen, SCREEN_STEPS),
     (Outside::Screen, 16),
     (Outside::Screen, 32),
     (Outside::Screen, 64),
+    (Outside::Triangles, SCREEN_STEPS),
 ];
 
 /// The reference without what stones send to one another.
