@@ -93,8 +93,8 @@ struct CdrfMaterial {
     coverage: f32,
     // The share from which on a point covers; below 0 if a share of the samples covers.
     cutoff: f32,
-    // 0 to 1, another one for each body: which samples cover.
-    shift: f32,
+    // The body's number, which decides which samples cover.
+    body: u32,
     // Colour of the light that does not enter, relative to `base_color`.
     rest: vec3f,
 }
@@ -584,12 +584,12 @@ fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> 
 }
 
 // The coverage above which a sample is drawn: the cutoff, or one of 16 evenly spaced shares, each once in
-// 4 x 4 neighbouring samples, so that bodies need no order.
+// 4 x 4 neighbouring samples, so that bodies need no order. Each body begins with another one.
 fn cdrf_threshold(place: vec2u) -> f32 {
     if (material.cutoff >= 0.0f) {
         return material.cutoff;
     }
-    return fract((f32(sample_rank(place)) + 0.5f) / 16.0f + material.shift);
+    return (f32((sample_rank(place) + sample_shift(place, material.body)) & 15u) + 0.5f) / 16.0f;
 }
 
 @fragment

@@ -546,10 +546,12 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
             if (!split.stay.x) {
                 reflected.throughput *= color;
                 reflected.within = behind;
+                reflected.left.y = ray.left.y;
             }
             if (split.stay.y) {
                 color = vec3f(1.0f);
                 behind = ray.within;
+                ray.left.y = BVH_TRACE_NONE;
             }
         }
         ray.throughput *= color;

@@ -4,7 +4,7 @@
 //! ```
 //! use lapidary_diffusion::{DIFFUSION_MILNE, fluence, milne, scattered, segment};
 //!
-//! // Light diffuses out of glass of index 1.5 as if its surface lay 3.6 times as far out.
+//! // Light diffuses out of glass of index 1.5 as if its surface lay 3.2 times as far out.
 //! assert!((milne(1.5) / DIFFUSION_MILNE - 3.2334).abs() < 1e-3);
 //! // A thin layer scatters its thickness.
 //! assert_eq!(scattered(0.0, 2f32.powi(-40)), 2f32.powi(-40));

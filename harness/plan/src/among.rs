@@ -168,6 +168,11 @@ pub(crate) fn beside(object: &Object, scene: &Scene, size: [u32; 2]) -> Option<S
     stands_in(object, scene).map(|around| format!("it stands within the bounds of {}", around.name))
 }
 
+/// Whether a body that is not clear covers only a share of what is behind it.
+pub(crate) fn is_sheer(object: &Object) -> bool {
+    !object.material.is_clear() && object.material.covered_share() < 1.0
+}
+
 /// Returns the first body that is not clear and whose box reaches around a clear one's middle.
 fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
     let middle = bounds(object).centre();

@@ -75,8 +75,9 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
     let stands = request.quality != Quality::Fast && has(Effect::Around);
-    // What leaves a convex body is looked for by the effect `around` alone.
-    let walks = Shape::of(object.shape()) == Shape::Convex && object.copies.is_none();
+    // What leaves a convex body is looked for by the effect `around` alone, to which others cover all that is behind them.
+    let is_sheer = scene.objects.iter().any(among::is_sheer);
+    let walks = Shape::of(object.shape()) == Shape::Convex && object.copies.is_none() && !is_sheer;
     if !stands || !inside || walks {
         return None;
     }

@@ -410,7 +410,7 @@ impl Case<'_> {
             _ if !self.is_gem() => off(self.not_clear()),
             _ if self.is_among() => off("light meets bodies by their triangles"),
             _ if self.around().0 => off("light meets bodies by their triangles"),
-            Some(Outside::Bodies) => self.meets("asked for, ", MOST_BODIES),
+            Some(Outside::Bodies | Outside::Triangles) => self.meets("asked for, ", MOST_BODIES),
             Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),
             None => self.meets("", MOST_BODIES),
@@ -766,9 +766,8 @@ impl Case<'_> {
     }
 
     fn coverage(&self) -> Answer {
-        if self.is_gem() && self.around().0 {
-            let partly = |object: &&Object| object.material.is_opaque() && object.material.covered_share() < 1.0;
-            return match self.scene.objects.iter().find(partly) {
+        if self.is_among() && self.around().0 {
+            return match self.scene.objects.iter().find(|object| among::is_sheer(object)) {
                 Some(object) => on(format!("{} covers a share of what is behind it", object.name)),
                 None => off("opaque bodies cover all that is behind them"),
             };

@@ -137,7 +137,8 @@ impl Case<'_> {
             !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
         };
         let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
-        let alpha = (!draws && !material.covers_all()).then_some("alphaMode");
+        let by_factor = self.rung == Rung::Reference && material.base_color_texture.is_none();
+        let alpha = (!draws && !by_factor && !material.covers_all()).then_some("alphaMode");
         slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).chain(alpha).collect()
     }
 
@@ -181,7 +182,7 @@ impl Case<'_> {
     fn black(&self, objects: &Objects) -> Option<Note> {
         let Object { material, mesh, .. } = self.object;
         let is_inside = matches!(self.rung, Rung::Inside { .. } | Rung::Reference) && material.is_clear();
-        if !is_inside || mesh.triangle_count() > MOST_DIAGNOSED {
+        if !is_inside || material.clear_share() < 1.0 || mesh.triangle_count() > MOST_DIAGNOSED {
             return None;
         }
         // Only an absorbing body has to be measured.

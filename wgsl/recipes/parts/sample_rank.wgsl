@@ -4,6 +4,14 @@
 //
 // A recipe adds: nothing.
 
+// A number that nobody foresees, from 0 to 15, for each 4 x 4 samples and body: an integer hash.
+fn sample_shift(place: vec2u, body: u32) -> u32 {
+    var v = (place.x >> 2u) + 1664525u * (place.y >> 2u) + 1013904223u * body;
+    v = (v ^ (v >> 16u)) * 2146121005u;
+    v = (v ^ (v >> 15u)) * 2221713035u;
+    return v >> 28u;
+}
+
 // The rank of a sample among 4 x 4, from 0 to 15, by its place in the frame. With 16 samples for a pixel, each
 // pixel has every rank once.
 fn sample_rank(place: vec2u) -> u32 {

@@ -52,7 +52,7 @@ pub(super) fn promises() -> Vec<Promise> {
         }),
         holds(
             "microfacet_facet",
-            "an eye below the surface sees the facets' backs",
+            "an eye below the surface sees the facets that turn towards it",
             |draws| {
                 let azimuth = glam::Vec2::from_angle(draws.between(0.0, 6.0));
                 let eye = (draws.direction() - 1.5 * DVec3::Z).normalize().as_vec3();

@@ -275,8 +275,9 @@ impl Surroundings<'_> {
     }
 
     /// Finds the next surface of a clear body along the ray. If there is none, the light of the matte
-    /// body or of the environment ahead is added to `outcome`. The ray is lost if it is within a body
-    /// whose surface has a gap there, or comes into more bodies than are followed.
+    /// body or of the environment ahead is added to `outcome`. A ray within bodies that meets no surface has left the
+    /// smooth ones; within others, whose surface has a gap there, it is lost, and so it is if it comes into more bodies than
+    /// are followed.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
         let (mut ray, mut ahead) = (*ray, self.ahead(ray));
         // A ray that started on a curved surface, above the face, may have passed the body's edge: it is outside.
@@ -309,7 +310,9 @@ impl Surroundings<'_> {
     /// Takes from a ray that crosses a partly clear surface what does not enter, for which the surface is matt.
     fn part(&self, arrival: &Arrival, mut ray: Ray, outcome: &mut Outcome) -> Ray {
         let Arrival { surface, enters, point, .. } = *arrival;
-        let crosses = surface.is_thin || ray.within.matter(&self.order) != arrival.before.matter(&self.order);
+        // A rough wall's one ray may have been reflected.
+        let passes = surface.is_thin && ray.direction.dot(arrival.normal) < 0.0;
+        let crosses = passes || ray.within.matter(&self.order) != arrival.before.matter(&self.order);
         if surface.clear < 1.0 && enters && crosses {
             outcome.radiance += ray.throughput * self.bodies.sent_in_part(arrival.place, arrival.normal, point);
             ray.throughput *= surface.clear;

@@ -10,6 +10,11 @@ use std::f64::consts::PI;
 /// Bindings in group 0: the nodes, and the corners.
 pub(crate) const BINDINGS: [u32; 2] = [17, 18];
 
+/// Largest radiance that a corner sends.
+const MOST_SENT: f64 = 1e30;
+/// The same as a multiple of the mean over all corners: what sends more is cut.
+const MOST_OF_MEAN: f64 = 64.0;
+
 /// The hierarchy in a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Beside {
@@ -29,7 +34,7 @@ impl Beside {
         around: &[DVec3; harmonics::COUNT],
     ) -> Result<Self, RenderError> {
         let (mut positions, mut sent, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-        for object in scene.beside_stones() {
+        for object in scene.beside_stones().filter(|object| object.material.covered_share() > 0.0) {
             let color = thickness::color(&object.material, &object.mesh.colors).as_dvec3() / PI;
             for corners in triangles(&object.mesh) {
                 for (position, normal) in corners {
@@ -39,18 +44,21 @@ impl Beside {
                     });
                     let irradiance = harmonics::irradiance(around, normal.as_dvec3()) + lights.sum::<DVec3>();
                     positions.push(position);
-                    sent.push((color * irradiance).as_vec3());
+                    sent.push((color * irradiance).min(DVec3::splat(MOST_SENT)).as_vec3());
                 }
                 let last = positions.len() as u32;
                 // From inside, as a ray meets them that leaves a solid.
                 indices.extend([last - 3, last - 1, last - 2]);
             }
         }
-        let largest = sent.iter().copied().fold(Vec3::splat(f32::MIN_POSITIVE), Vec3::max);
+        // A corner beside a lamp would leave too few steps to all others.
+        let mean = sent.iter().map(|sent| sent.as_dvec3()).sum::<DVec3>() / sent.len().max(1) as f64;
+        let largest = sent.iter().copied().fold(Vec3::ZERO, Vec3::max).min((MOST_OF_MEAN * mean).as_vec3());
+        let largest = largest.max(Vec3::splat(f32::MIN_POSITIVE));
         let bvh = Bvh::build(&positions, &indices);
         let mut corners = bvh.corners.clone();
         for (corner, index) in corners.iter_mut().zip(&bvh.indices) {
-            corner.w = packed(sent[*index as usize] / largest);
+            corner.w = packed((sent[*index as usize] / largest).min(Vec3::ONE));
         }
         corners.push(largest.extend(0.0));
         let limits = wgpu::Limits::default();

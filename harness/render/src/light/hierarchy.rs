@@ -80,7 +80,8 @@ impl Hierarchy {
             .with("within", within)
             .with("around", mean_radiance(&settings.environment))
             .with("throughput_limit", throughput_limit(settings));
-        let records: Vec<Record> = bodies.iter().map(|body| record(&body.material)).collect();
+        let records: Vec<Record> =
+            bodies.iter().map(|body| record(&body.material, &scene.objects[body.object].mesh.colors)).collect();
         let words = bvh.words();
         let [nodes, corners, of_bodies, start] = builder.of_object("", |builder| {
             let nodes = builder.storage("nodes", bytemuck::cast_slice(&words));
@@ -164,7 +165,7 @@ impl Bodies {
 }
 
 /// Returns `SceneBody` of the recipe.
-fn record(material: &Material) -> Record {
+fn record(material: &Material, colors: &[Vec3]) -> Record {
     let kind = match material {
         _ if !material.is_clear() => 2_u32,
         _ if material.is_thin_wall() => 1,
@@ -173,7 +174,7 @@ fn record(material: &Material) -> Record {
     // What scatters is matte here.
     let clear = if material.is_clear() { material.clear_share() } else { 1.0 - material.covered_share() };
     let absorption = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
-    let color = if material.is_clear() { material.base_color } else { thickness::color(material, &[]) };
+    let color = if material.is_clear() { material.base_color } else { thickness::color(material, colors) };
     let record = Record::new("SceneBody").with("base_color", color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
     record.with("alpha", material.facet_slope()).with("clear", clear)

@@ -114,11 +114,10 @@ fn add(
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
-    // Multiples of the golden ratio lie far from each other.
     let number = light.0.scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
-    let shift = (number as f32 * 0.618_034).fract();
-    let color = thickness::color(material, &mesh.colors);
-    let record = builder.record("material", record_of((material, color), decisions, shift));
+    // Light that does not enter keeps its own, even if the matter is black.
+    let color = thickness::color(material, &mesh.colors).max(Vec3::splat(1e-6));
+    let record = builder.record("material", record_of((material, color), decisions, number as u32));
     let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
@@ -163,7 +162,7 @@ fn add(
 }
 
 /// Fills `CdrfMaterial` of the recipe.
-fn record_of((material, color): (&Material, Vec3), decisions: &Decisions, shift: f32) -> Record {
+fn record_of((material, color): (&Material, Vec3), decisions: &Decisions, number: u32) -> Record {
     let sigma0 = safe_sigma0(material);
     let record = Record::new("CdrfMaterial").with("base_color", color).with("index", material.ior);
     let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
@@ -185,8 +184,8 @@ fn record_of((material, color): (&Material, Vec3), decisions: &Decisions, shift:
     record
         .with("coverage", share)
         .with("cutoff", cutoff.unwrap_or(-1.0))
-        .with("shift", shift)
-        .with("rest", material.base_color / color.max(Vec3::splat(1e-6)))
+        .with("body", number)
+        .with("rest", material.base_color / color)
 }
 
 /// Returns the material's widths, made safe.

@@ -94,6 +94,31 @@ fn a_body_within_a_clear_one_is_seen() {
     }
 }
 
+/// What leaves a convex stone meets the triangles beside it: through a block of index 1 a matte ball looks as without it, under a
+/// lamp and a sun whose discs the stone shows too, by copies of the same rung as by bounds.
+#[test]
+fn a_stone_shows_the_triangles_beside_it() {
+    let behind = ball(0.7, DVec3::new(0.1, 0.0, -1.5), matte(Vec3::new(0.9, 0.5, 0.2)));
+    let lights = vec![
+        Light::Directional { toward: Vec3::new(0.6, 0.8, 0.0), irradiance: Vec3::splat(2.0) },
+        Light::Point { position: Vec3::new(-3.0, 2.0, 1.0), intensity: Vec3::new(9.0, 6.0, 3.0) },
+    ];
+    let lit = |objects| Scene { lights: lights.clone(), ..scene(objects) };
+    let alone = drawn(&lit(vec![behind.clone()]), &of_rung("by-material"));
+    let block = Object::new("block", cube(0.6), glass(1.0));
+    let gem = lapidary_render::GemOptions { outside: Some(lapidary_plan::Outside::Triangles), ..Default::default() };
+    let settings = Settings { gem, lights: true, ..of_rung("walk-8+tracker") };
+    let through = drawn(&lit(vec![block, behind]), &settings);
+    let covered = |pixel: &&[f32; 4]| pixel[3] == 1.0;
+    let pairs = alone.linear.iter().zip(&through.linear).filter(|(one, _)| covered(one));
+    let channels = pairs.flat_map(|(one, other)| (0..3).map(|channel| (one[channel] - other[channel]).abs()));
+    let mut apart: Vec<f32> = channels.collect();
+    apart.sort_by(f32::total_cmp);
+    // Shares of the largest, in 255 steps of their roots: at most two roots of it times a step, half of which rounding is off.
+    let largest = alone.linear.iter().flat_map(|pixel| pixel[..3].to_vec()).fold(0.0, f32::max);
+    assert!(apart.len() > 500 && apart[apart.len() * 9 / 10] < largest / 255.0 + 1e-3, "{apart:?} of {largest}");
+}
+
 /// Whatever lies within what, light of radiance 1 from everywhere leaves a clear body as it was.
 #[test]
 fn no_energy_is_lost_or_made() {

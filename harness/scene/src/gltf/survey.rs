@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use ::gltf::Semantic;
 use ::gltf::json::Root;
-use ::gltf::json::material::Material as JsonMaterial;
+use ::gltf::json::accessor::Type;
+use ::gltf::json::material::{AlphaMode, Material as JsonMaterial};
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use serde_json::{Map, Value};
@@ -104,6 +105,12 @@ fn primitive(root: &Root, primitive: &Primitive, mesh: User<'_>, lacking: &mut L
         lacking.note(COLORS, "`COLOR_n` after the first".to_owned(), "the first is drawn alone", mesh);
     }
     let material = primitive.material.and_then(|index| root.materials.get(index.value()));
+    let colors = primitive.attributes.iter().find(|(semantic, _)| **semantic == Checked::Valid(Semantic::Colors(0)));
+    let accessor = colors.and_then(|(_, index)| root.accessors.get(index.value()));
+    let has_alpha = accessor.is_some_and(|accessor| accessor.type_ == Checked::Valid(Type::Vec4));
+    if has_alpha && material.is_some_and(|material| material.alpha_mode != Checked::Valid(AlphaMode::Opaque)) {
+        lacking.note("alpha", "alpha of `COLOR_0`".to_owned(), "the material's is drawn alone", mesh);
+    }
     let mut textures = material.into_iter().flat_map(texture_members);
     if !has(&|semantic| *semantic == Semantic::TexCoords(0)) && textures.any(is_read) {
         lacking.note(TEXTURES, "a missing `TEXCOORD_0`".to_owned(), "factors are drawn alone", mesh);

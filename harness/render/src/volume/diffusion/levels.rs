@@ -157,7 +157,7 @@ impl Levels {
 
     /// Largest number of cycles of a frame.
     pub(super) fn cycles(&self) -> u32 {
-        self.options.most_cycles
+        self.options.most_cycles.max(self.options.cycles)
     }
 
     /// The fluence of the finest level: four f32 for each voxel.
@@ -211,9 +211,10 @@ impl Levels {
         let of_level = |(number, level): (usize, &Level)| {
             let of_cells = [level.faces, level.reactions].into_iter().chain(level.tiles.buffers());
             let of_cells = if number == 0 { 0 } else { frame.bytes_of(of_cells) };
-            frame.bytes_of([level.fluence, level.right]) + of_cells
+            frame.bytes_of([level.fluence, level.right].into_iter().chain(level.open)) + of_cells
         };
-        frame.bytes_of([self.packed].into_iter().chain(self.residual_sums()))
+        let sums = self.residual.as_ref().map(|(sums, _)| *sums);
+        frame.bytes_of([self.packed].into_iter().chain(sums))
             + self.levels.iter().enumerate().map(of_level).sum::<u64>()
     }
 }
