@@ -85,9 +85,9 @@ fn microfacet_half(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
 // height above the surface plane is a product; as a difference it would be lost where eye and facet are grazing.
 // Returns: unit normal, on the surface's side and the eye's.
 // Units: none; alpha is a slope.
-// Domain: unit vectors with normal . toward_eye at least 0; any alpha, clamped to [0.001, 1]; u in [0, 1), a multiple of
-//   2^-24; azimuth (cos, sin) of any angle, 2 pi turns. It turns about the normal, from a direction that jumps where
-//   normal.z changes sign, as any must somewhere.
+// Domain: unit vectors with normal . toward_eye at least 0; any alpha, clamped to [0.001, 1]; u in [0, 1), a
+//   multiple of 2^-24, and less than 0 counts as 0; azimuth (cos, sin) of any angle, 2 pi turns. It turns about the
+//   normal, from a direction that jumps where normal.z changes sign, as any must somewhere.
 // Outside: finite; an eye below the surface sees the facets that turn towards it.
 // Accuracy: lavapipe 20 ulp + 6 backward; portable 56 ulp + 12 backward
 fn microfacet_facet(normal: vec3f, toward_eye: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> vec3f {
@@ -98,8 +98,9 @@ fn microfacet_facet(normal: vec3f, toward_eye: vec3f, alpha: f32, u: f32, azimut
     let cosine = clamp(inverse * height, -1.0f, 1.0f);
     let sine_squared = inverse * inverse * dot(along, along);
     // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
-    let rise = (1.0f - u) * (1.0f + cosine);
-    let sine = sqrt(u * ((1.0f + cosine) * rise + sine_squared));
+    let v = max(u, 0.0f);
+    let rise = (1.0f - v) * (1.0f + cosine);
+    let sine = sqrt(v * ((1.0f + cosine) * rise + sine_squared));
     // The cap's direction along the surface: that in the plane z = 0, turned by half a turn about the middle of the
     // normal and the z axis.
     let middle = normal + vec3f(0.0f, 0.0f, select(1.0f, -1.0f, normal.z < 0.0f));

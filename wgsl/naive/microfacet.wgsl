@@ -41,8 +41,8 @@ fn microfacet_half_naive(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     return normalize(toward_light + toward_eye);
 }
 
-// A facet that the eye sees, as Dupuy and Benyoub print it. Kept to show where it fails: near the middle of the cap its sine
-// is the root of a difference, and the normal -z has no half turn about the middle.
+// A facet that the eye sees, as Dupuy and Benyoub print it. Kept to show where it fails: near the middle of
+// the cap its sine is the root of a difference, and the normal -z has no half turn about the middle.
 // Returns: unit normal.
 // Units: none; alpha is a slope.
 // Domain: unit vectors with normal . toward_eye above 0, alpha in (0, 1], u in (0, 1), azimuth a unit vector.

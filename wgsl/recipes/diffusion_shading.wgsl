@@ -219,8 +219,10 @@ fn diffusion_around(normal: vec3f, toward_eye: vec3f) -> DiffusionAround {
 fn diffusion_around_mirrored(normal: vec3f, toward_eye: vec3f) -> vec3f {
     let around = harmonics_around(reflect(-toward_eye, normal));
     let squared = body.alpha * body.alpha;
-    let sharper = exp(-squared) * around.first + exp(-4.0f * squared) * around.second + exp(-16.0f * squared) * around.fourth;
-    return max(around.zeroth + sharper, vec3f(0.0f));
+    let first = exp(-squared) * around.first;
+    let second = exp(-4.0f * squared) * around.second;
+    let fourth = exp(-16.0f * squared) * around.fourth;
+    return max(around.zeroth + first + second + fourth, vec3f(0.0f));
 }
 
 // Radiance towards the eye under a radiance of 1 from all around, by a half space. With a boundary it is that

@@ -90,8 +90,9 @@ pub fn facet(normal: Vec3, toward_eye: Vec3, alpha: f32, u: f32, azimuth: Vec2) 
     let cosine = (inverse * height).clamp(-1.0, 1.0);
     let sine_squared = inverse * inverse * along.dot(along);
     // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
-    let rise = (1.0 - u) * (1.0 + cosine);
-    let sine = (u * ((1.0 + cosine) * rise + sine_squared)).sqrt();
+    let v = u.max(0.0);
+    let rise = (1.0 - v) * (1.0 + cosine);
+    let sine = (v * ((1.0 + cosine) * rise + sine_squared)).sqrt();
     // The cap's direction along the surface: that in the plane z = 0, turned by half a turn about the middle of the
     // normal and the z axis.
     let middle = normal + Vec3::new(0.0, 0.0, if normal.z < 0.0 { -1.0 } else { 1.0 });

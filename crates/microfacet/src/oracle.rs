@@ -96,7 +96,8 @@ pub fn facet(normal: DVec3, toward_eye: DVec3, alpha: f64, u: f64, azimuth: DVec
     let eye = (height * normal + alpha * along).normalize();
     let cosine = normal.dot(eye).clamp(-1.0, 1.0);
     // Of the cap's height 1 + cosine, the share u lies above.
-    let polar = 2.0 * (0.5 * u * (1.0 + cosine)).sqrt().asin();
+    let share = u.max(0.0);
+    let polar = 2.0 * (0.5 * share * (1.0 + cosine)).sqrt().asin();
     let side = if normal.z < 0.0 { -1.0 } else { 1.0 };
     let level = polar.sin() * azimuth;
     let turn = DQuat::from_axis_angle((normal + side * DVec3::Z).normalize(), PI);

@@ -3,10 +3,11 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts surroundings, bodies, beside, lights, glints and screen, and mesh if it reads one; struct
-// GemVertex, whose members include `position`, `face_normal` and, with instances, `instance`; the entry
-// point gem_vertex; struct GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters);
-// gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a search).
+// A geometry recipe adds: the parts surroundings, bodies, beside, lights, glints and screen, and mesh if it
+// reads one; struct GemVertex, whose members include `position`, `face_normal` and, with instances, `instance`;
+// the entry point gem_vertex; struct GemPlace (the place of a ray inside the stone); gem_enter (the place of a
+// ray that enters); gem_hit (the next facet); and gem_hit_both (the next facets of two rays that may share a
+// search).
 
 // A wall without an interior: the environment behind it shows undeflected below the reflection.
 // Called for by KHR_materials_transmission without a thickness from KHR_materials_volume.

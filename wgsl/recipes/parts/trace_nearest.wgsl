@@ -5,11 +5,10 @@
 //   Rendering", section 5.
 // compares: bvh_trace
 //
-// A recipe adds: the module bvh_trace, and the bindings `nodes` and `corners`. `nodes`,
-// array<BvhTraceNode>, has the root first. `corners`, array<vec4f>, has three entries per triangle,
-// counter-clockwise from the side to which rays leave, in the order of the leaves; w is not read. A triangle's number is
-// its position there. A corner is then one load; by way of indices a trace takes a fifth more time on
-// lavapipe.
+// A recipe adds: the module bvh_trace, and the bindings `nodes` and `corners`. `nodes`, array<BvhTraceNode>, has
+// the root first. `corners`, array<vec4f>, has three entries per triangle, counter-clockwise from the side to
+// which rays leave, in the order of the leaves; w is not read. A triangle's number is its position there. A
+// corner is then one load; by way of indices a trace takes a fifth more time on lavapipe.
 
 // Loops over all triangles instead of the hierarchy: the paper's comparison.
 override TRAVERSAL_LOOP: bool = false;
