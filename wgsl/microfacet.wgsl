@@ -95,7 +95,7 @@ fn microfacet_facet(normal: vec3f, toward_eye: vec3f, alpha: f32, u: f32, azimut
     let height = dot(normal, toward_eye);
     let along = a * (toward_eye - height * normal);
     let inverse = 1.0f / sqrt(dot(along, along) + height * height);
-    let cosine = clamp(inverse * height, -1.0f, 1.0f);
+    let cosine = inverse * height;
     let sine_squared = inverse * inverse * dot(along, along);
     // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
     let v = max(u, 0.0f);

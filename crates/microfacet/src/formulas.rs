@@ -296,6 +296,7 @@ type Seen = (Vec3, Vec3, f32, f32, Vec2);
 fn seen(draws: &mut Draws<'_>) -> Seen {
     let normal = match draws.below(8) {
         0 => draws.pick(&[Vec3::Z, Vec3::NEG_Z, Vec3::X]),
+        1 => draws.unit_vector().with_z(0.0).normalize_or(Vec3::Y),
         _ => draws.unit_vector(),
     };
     let axis = normal.as_dvec3().normalize();
@@ -337,6 +338,7 @@ fn facets() -> Vec<Formula> {
             .edge("the eye along the normal", |(normal, eye, ..)| normal == eye)
             .edge("the middle of the cap", |(.., u, _)| u == 0.0)
             .edge("the cap's edge", |(.., u, _)| u == 1.0f32.next_down())
+            .edge("a normal in the plane z = 0", |(normal, _, alpha, ..)| normal.z == 0.0 && alpha > 0.1)
             .edge("a normal along -z", |(normal, ..)| normal == Vec3::NEG_Z)
             .edge("alpha below its least", |(_, _, alpha, ..)| alpha < 0.001)
             .edge("alpha above its greatest", |(_, _, alpha, ..)| alpha > 1.0)

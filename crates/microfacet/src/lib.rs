@@ -87,7 +87,7 @@ pub fn facet(normal: Vec3, toward_eye: Vec3, alpha: f32, u: f32, azimuth: Vec2) 
     let height = normal.dot(toward_eye);
     let along = a * (toward_eye - height * normal);
     let inverse = 1.0 / (along.dot(along) + height * height).sqrt();
-    let cosine = (inverse * height).clamp(-1.0, 1.0);
+    let cosine = inverse * height;
     let sine_squared = inverse * inverse * along.dot(along);
     // Height of the facet, times the length of the sum of two unit vectors: towards the eye, and of the cap.
     let v = u.max(0.0);

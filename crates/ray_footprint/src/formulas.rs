@@ -105,6 +105,12 @@ fn edge_formulas() -> Vec<Formula> {
     // A facet that the ray passes edge-on: the runner-up's plane is met at once.
     let (direction, right, down) = (Vec3::Z, vec3(0.01, 0.0, 0.003), vec3(0.0, 0.01, -0.002));
     let edge_on: Case = (direction, right, down, Vec3::X, vec3(0.6, 0.0, 0.8), 0.5);
+    // Offsets nearly along the ray, which meets the nearest plane head-on.
+    let toward = vec3(-0.559_120_06, -0.777_824_04, -0.287_009_66);
+    let aslant = vec3(-0.559_285_1, -0.777_569_5, -0.287_377_5);
+    let offsets = (vec3(-0.883_789_06, -1.0, -0.439_453_13), vec3(-0.804_687_5, -1.0, -0.517_089_84));
+    let one_plane: Case = (toward, offsets.0, offsets.1, toward, aslant, 0.0);
+    let of_one_plane = [0.0, 5.316_353_312_41e-5, 6.866_346_284_80e-5];
     vec![
         formula(M, "ray_footprint_edge", mirror::edge, oracle::edge, |draws| case(draws, 0.0))
             .edge("seen edge-on", |(direction, .., nearest, _, _): Case| nearest.dot(direction) < 1e-6)
@@ -125,6 +131,7 @@ fn edge_formulas() -> Vec<Formula> {
                 if edge.x >= -4.0 * f32::EPSILON * case.5 { Ok(()) } else { Err(format!("{edge}")) }
             })
             .hard_case("a facet seen edge-on", edge_on, (&[0.0, -0.008, 0.0], 1e-6), ("ray_footprint_edge_naive", 1e9))
+            .hard_case("nearly one plane", one_plane, (&of_one_plane, 5e-10), ("ray_footprint_edge_naive", 1e-7))
             .build(),
         formula(M, "ray_footprint_edge_naive", mirror::edge_naive, oracle::edge, |draws| {
             // Offsets along the gradient, and aside by less: no component cancels.
