@@ -9,6 +9,9 @@ use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "diffusion";
 
+/// An extrapolation length near Milne's; the hard cases' limits are those of this one.
+const MILNE: f32 = 0.7104;
+
 /// Gamma at which kappa times a cosine of 1 is 1, to 5e-7.
 const AT_POLE: f32 = 0.57735;
 
@@ -221,7 +224,7 @@ fn surface() -> Vec<Formula> {
                 _ => draws.between(0.0, 1.0),
             };
             let milne = match draws.below(3) {
-                0 => draws.pick(&[0.7104, 0.5, 20.0]),
+                0 => draws.pick(&[MILNE, 0.5, 20.0]),
                 _ => draws.between(0.5, 20.0),
             };
             (cosine, draws.between(1.0, 3.0), draws.between(1.0, 3.0), matter(draws), milne)
@@ -372,7 +375,7 @@ fn rays() -> Vec<Formula> {
 /// Draws an extrapolation length: a boundary's, the ends, or out of range.
 fn extrapolation(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
-        0 => draws.pick(&[0.7104, 0.5, 20.0, 0.0, 30.0]),
+        0 => draws.pick(&[MILNE, 0.5, 20.0, 0.0, 30.0]),
         _ => draws.between(0.5, 20.0),
     }
 }
@@ -406,11 +409,11 @@ fn of_light() -> Vec<Formula> {
         .invariant("in [0, 63]", |_, fluence: f32| within("fluence", fluence, 0.0, 63.01))
         .hard_case(
             "diffusion decays as fast as the light",
-            (1.0, 1.0, AT_POLE, 0.7104),
+            (1.0, 1.0, AT_POLE, MILNE),
             (&[0.520_675_525_373], 1e-6),
             (NAIVE, 1e-3),
         )
-        .hard_case("exactly grazing", (0.0, 0.0, 0.0, 0.7104), (&[2.131_199_955_94e-9], 1e-14), (NAIVE, f64::INFINITY))
+        .hard_case("exactly grazing", (0.0, 0.0, 0.0, MILNE), (&[2.131_199_955_94e-9], 1e-14), (NAIVE, f64::INFINITY))
         .build(),
         formula(M, NAIVE, mirror::fluence_naive, oracle::fluence_naive, |draws| {
             (draws.between(0.0, 3.0), draws.between(0.2, 1.0), draws.between(0.0, 0.4), draws.between(0.7, 4.0))
@@ -430,7 +433,7 @@ fn of_light() -> Vec<Formula> {
         .invariant("a share", |_, share: f32| within("share", share, 0.0, 0.52))
         .hard_case(
             "a thin slab that absorbs nothing",
-            (2f32.powi(-30), 0.0, 0.7104),
+            (2f32.powi(-30), 0.0, MILNE),
             (&[4.656_612_873_1e-10], 1e-15),
             ("diffusion_slab_naive", f64::INFINITY),
         )
@@ -461,7 +464,6 @@ fn of_light() -> Vec<Formula> {
 
 fn of_parts() -> Vec<Formula> {
     const NAIVE: &str = "diffusion_local_naive";
-    const MILNE: f32 = 0.7104;
     vec![
         formula(M, "diffusion_local", mirror::local, oracle::local, |draws| {
             let law = up_to(draws, 4.0);

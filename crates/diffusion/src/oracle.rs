@@ -34,16 +34,18 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906179845938664, 0.23692688505618908),
 ];
 
+/// Points on [0, 1] and their weights: Gauss's in equal panels.
+fn points(panels: u32) -> impl Iterator<Item = (f64, f64)> {
+    let half = 0.5 / f64::from(panels);
+    let middles = (0..panels).map(move |panel| half * (2.0 * f64::from(panel) + 1.0));
+    middles.flat_map(move |middle| GAUSS.map(|(node, weight)| (middle + half * node, half * weight)))
+}
+
 /// Returns the integral of `f` over [low, high], in equal panels no wider than `panel`.
 fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let count = ((high - low) / panel).ceil().max(1.0);
-    let half = 0.5 * (high - low) / count;
-    (0..count as u32)
-        .map(|index| {
-            let middle = low + half * (2.0 * f64::from(index) + 1.0);
-            half * GAUSS.iter().map(|(node, weight)| weight * f(middle + half * node)).sum::<f64>()
-        })
-        .sum()
+    let length = high - low;
+    let count = (length / panel).ceil().max(1.0);
+    length * points(count as u32).map(|(share, weight)| weight * f(low + share * length)).sum::<f64>()
 }
 
 /// Returns the integral of `f` over [0, high], in panels that begin with the width `scale` and double up to
@@ -72,13 +74,6 @@ fn reflected(cosine: f64, index: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
-/// Points on [0, 1] and their weights: Gauss's in equal panels.
-fn points(panels: u32) -> Vec<(f64, f64)> {
-    let half = 0.5 / f64::from(panels);
-    let middles = (0..panels).map(|panel| half * (2.0 * f64::from(panel) + 1.0));
-    middles.flat_map(|middle| GAUSS.map(|(node, weight)| (middle + half * node, half * weight))).collect()
-}
-
 /// Returns Chandrasekhar's H function of matter that absorbs nothing, from the integral of its logarithm over
 /// ln(1 - atan(x) / x), with x from 0 to infinity.
 fn h(cosine: f64) -> f64 {
@@ -93,7 +88,7 @@ fn h(cosine: f64) -> f64 {
             let lost = if x < 0.01 { square * (1.0 / 3.0 - square * (0.2 - square / 7.0)) } else { 1.0 - x.atan() / x };
             (x, weight * slope / rest.powi(2) * lost.ln())
         };
-        points(32).into_iter().map(of_point).collect()
+        points(32).map(of_point).collect()
     });
     let sum: f64 = LOGARITHMS.iter().map(|(x, part)| part / (1.0 + (cosine * x).powi(2))).sum();
     (-cosine / PI * sum).exp()
@@ -127,8 +122,8 @@ pub fn milne(relative_index: f64) -> f64 {
     let critical = ((index - 1.0) * (index + 1.0)).sqrt() / index;
     // Grazing light changes fast, and so does Fresnel's reflectance beside the critical angle.
     let squared = |(u, weight): (f64, f64)| (u * u, 2.0 * u * weight);
-    let below = points(3).into_iter().map(squared).map(|(m, weight)| (critical * m, critical * weight));
-    let above = points(3).into_iter().map(squared);
+    let below = points(3).map(squared).map(|(m, weight)| (critical * m, critical * weight));
+    let above = points(3).map(squared);
     let above = above.map(|(m, weight)| (critical + (1.0 - critical) * m, (1.0 - critical) * weight));
     // Cosine, H, and the weight of what is thrown back.
     let of_point = |(m, weight): (f64, f64)| (m, h(m), weight * m * h(m) * reflected(m, index));

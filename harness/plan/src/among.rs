@@ -57,8 +57,7 @@ pub(crate) fn share_within(body: &Object, around: &Object) -> Share {
 pub fn is_smooth(object: &Object) -> bool {
     static FOUND: Remembered<bool> = Remembered::new();
     let normals = object.material.normals;
-    object.material.is_clear()
-        && !object.material.is_thin_wall()
+    object.material.has_clear_inside()
         && match normals {
             Normals::Decided => FOUND.of(&object.mesh, |mesh| normals.are_smooth(mesh)),
             Normals::File | Normals::Facets => normals.are_smooth(&object.mesh),

@@ -1,6 +1,8 @@
 //! What a material requires: for each effect, whether it is on under the rung that draws the
 //! object, and the property that decides.
 
+mod clear;
+
 use super::among;
 use super::casting::{self, Casting};
 use super::choice::{self, Choice};
@@ -8,12 +10,10 @@ use super::chosen::Chosen;
 use super::effect::{Effect, Effects};
 use super::enclosed;
 use super::numbers::{short, triple};
-use crate::{Geometry, MOST_BODIES, Outside, Quality, Request, Rung, Spectrum};
+use crate::{Geometry, Quality, Request, Rung};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{
-    Coverage, Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape, TextureSlot,
-};
+use lapidary_scene::{Coverage, Density, Environment, Light, Material, Medium, Object, Scene, TextureSlot};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,18 +88,6 @@ impl Decisions {
     }
 }
 
-/// Describes how a rung finds the facets that rays meet inside a stone.
-fn way_of(geometry: Geometry) -> &'static str {
-    match geometry {
-        Geometry::Proxy => "the proxy",
-        Geometry::Convex => "a convex stone's planes",
-        Geometry::Walk => "a convex stone's planes, by a map of its facets",
-        Geometry::Bvh => "a hierarchy of all triangles",
-        Geometry::Triangles => "a loop over all triangles",
-        Geometry::Scene => "a hierarchy of all bodies' triangles",
-    }
-}
-
 /// One object under one rung.
 struct Case<'a> {
     object: &'a Object,
@@ -120,10 +108,6 @@ fn off(reason: impl Into<String>) -> Answer {
 }
 
 impl Case<'_> {
-    fn is_gem(&self) -> bool {
-        matches!(self.rung, Rung::Inside { .. } | Rung::Surface)
-    }
-
     fn decide(&self, effect: Effect) -> Answer {
         if self.rung == Rung::Reference {
             return off("the reference is computed on the CPU, by no recipe");
@@ -180,250 +164,6 @@ impl Case<'_> {
             Effect::SecondLobe => self.second_lobe(),
             Effect::Reflection => self.reflection(),
             Effect::Spot => self.spot(),
-        }
-    }
-
-    /// Returns why all effects of clear bodies are off.
-    fn not_clear(&self) -> String {
-        if self.material.scatters() {
-            "light scatters inside".to_owned()
-        } else if self.material.transmission == 0.0 {
-            "transmission 0: opaque".to_owned()
-        } else {
-            format!("the rung {} draws the surface alone", self.rung)
-        }
-    }
-
-    fn inside(&self, effect: Effect, geometry: Geometry) -> Answer {
-        let Rung::Inside { geometry: used, .. } = self.rung else {
-            return off(if self.rung == Rung::Surface { self.no_inside() } else { self.not_clear() });
-        };
-        let by_triangles = matches!(used, Geometry::Triangles | Geometry::Scene);
-        let serves = used == geometry || by_triangles && effect == Effect::BvhTrace;
-        if !serves {
-            return off(format!("the rung {} finds facets by {}", self.rung, way_of(used)));
-        }
-        on(format!("transmission {}, thickness {}", self.material.transmission, self.material.thickness))
-    }
-
-    /// Returns why no light is followed inside a clear body.
-    fn no_inside(&self) -> String {
-        if self.request.rung_of(self.object) == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }
-            .to_owned()
-    }
-
-    fn thin_wall(&self) -> Answer {
-        match self.rung {
-            Rung::Surface if self.request.rung_of(self.object) != Rung::Surface => {
-                on(format!("transmission {}, thickness 0", self.material.transmission))
-            }
-            Rung::Surface => off(self.no_inside()),
-            Rung::Inside { .. } => off(format!("thickness {}", self.material.thickness)),
-            _ => off(self.not_clear()),
-        }
-    }
-
-    fn is_among(&self) -> bool {
-        self.rung.is_among()
-    }
-
-    /// Returns an answer that needs a rung by which light goes from one body to another.
-    fn among(&self, called: Option<String>, not: &str) -> Answer {
-        match called {
-            None if self.scene.objects.len() > among::MOST_COMPARED => off("too many bodies to compare"),
-            None => off(not),
-            Some(called) if self.is_among() => on(called),
-            Some(called) => off(format!("the rung {} follows light through one body, though {called}", self.rung)),
-        }
-    }
-
-    fn nested(&self) -> Answer {
-        let shares = among::shares_space(self.object, self.scene);
-        let own = shares.map(|other| format!("{} shares space with {}", self.object.name, other.name));
-        // Light goes through all clear bodies, so that any of them calls for it. Few vertices are looked at: here boxes that
-        // meet are enough.
-        let any = || {
-            let (object, other) = among::any_share(self.scene).filter(|_| self.is_among())?;
-            Some(format!("{} may share space with {other}", object.name))
-        };
-        self.among(own.or_else(any), "it shares space with no body")
-    }
-
-    fn behind(&self) -> Answer {
-        let other = among::overlaps(self.object, self.scene, self.request.size);
-        let called = other.map(|other| format!("in the view it overlaps {}", other.name));
-        let itself = || {
-            let convex = self.object.copies.is_none() && Shape::of(&self.object.mesh) == Shape::Convex;
-            (!convex).then(|| "light that leaves it may meet it again".to_owned())
-        };
-        let called = if called.is_none() && self.is_among() { itself() } else { called };
-        self.among(called, "in the view it overlaps no clear body")
-    }
-
-    fn smooth(&self) -> Answer {
-        let clear = self.scene.objects.iter().filter(|_| self.is_among());
-        let found = std::iter::once(self.object).chain(clear).find(|object| among::is_smooth(object));
-        match found {
-            Some(object) => {
-                self.among(Some(format!("the normals of {} are those of a smooth surface", object.name)), "")
-            }
-            None => self.among(None, among::why_flat(self.object)),
-        }
-    }
-
-    fn rough(&self) -> Answer {
-        let clear = self.scene.objects.iter().filter(|_| self.is_among());
-        let found = std::iter::once(self.object).chain(clear).find(|object| object.material.facet_slope() > 0.0);
-        match found {
-            Some(object) if self.is_among() => {
-                on(format!("roughness {} of {}", short(object.material.roughness), object.name))
-            }
-            Some(_) => off(format!("the rung {} draws clear bodies polished", self.rung)),
-            None => off("clear bodies are polished"),
-        }
-    }
-
-    fn light(&self) -> Answer {
-        let is_named = self.request.rung_of(self.object) != Rung::ByMaterial && !self.is_among();
-        match self.scene.lights.len() {
-            0 => off("no lights"),
-            _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
-            // Copies, wavelengths and bounds leave no room for two more buffers.
-            _ if matches!(self.rung.spectrum(), Spectrum::Separate(_))
-                && self.instances().0
-                && self.bounds_trace().0 =>
-            {
-                off("the stage reads as many buffers as devices offer")
-            }
-            1 => on("1 light has a disc"),
-            count => on(format!("{count} lights have discs")),
-        }
-    }
-
-    fn around(&self) -> Answer {
-        match self.scene.beside_stones().count() {
-            _ if !self.is_among() => self.around_one(),
-            0 => off("all bodies are clear"),
-            _ if self.request.outside == Some(Outside::Environment) => off("asked for: environment"),
-            1 => on("beside 1 body that is not clear"),
-            count => on(format!("beside {count} bodies that are not clear")),
-        }
-    }
-
-    /// The same under a rung that follows light through one body: what leaves that meets triangles.
-    fn around_one(&self) -> Answer {
-        let walks = self.rung.geometry_of_inside() == Some(Geometry::Walk);
-        match self.request.outside {
-            _ if !walks => off(format!("the rung {} follows light through one body", self.rung)),
-            Some(Outside::Triangles) | None
-                if matches!(self.rung.spectrum(), Spectrum::Separate(_)) || self.instances().0 =>
-            {
-                off("the stage reads as many buffers as devices offer")
-            }
-            Some(Outside::Triangles) => self.meets("asked for, ", usize::MAX),
-            Some(other) => off(format!("asked for: {other}")),
-            None if self.request.quality == Quality::Fast => off("quality fast"),
-            None => among::beside(self.object, self.scene, self.request.size)
-                .map_or_else(|| off("no body stands around it, or is seen straight through it"), on),
-        }
-    }
-
-    fn absorption(&self) -> Answer {
-        // Copies may have colours of their own, and light may go through other bodies.
-        let others = self.scene.objects.iter().filter(|object| self.is_among() && object.material.is_clear());
-        let materials = self.object.materials().chain(others.flat_map(|object| object.materials()));
-        let coloured = materials.into_iter().find(|material| material.absorbs());
-        let material = coloured.as_ref().unwrap_or(self.material);
-        match self.rung {
-            Rung::Surface => off(self.no_inside()),
-            Rung::Inside { .. } if material.attenuation_color == Vec3::ONE => off("attenuation white"),
-            Rung::Inside { .. } if material.attenuation_distance.is_infinite() => off("attenuation distance infinite"),
-            Rung::Inside { .. } => on(format!(
-                "attenuation {} after {}",
-                triple(material.attenuation_color),
-                short(material.attenuation_distance)
-            )),
-            Rung::OpticalPath(_) => off("part of the way's cost, with what scattering takes"),
-            Rung::Diffusion(_) => off("part of diffusion, with what scattering takes"),
-            Rung::Diffuse(_) if material.medium.is_some() => off("part of the base colour and of sigma0"),
-            _ => off(self.not_clear()),
-        }
-    }
-
-    fn dispersion(&self) -> Answer {
-        let spectrum = match self.rung {
-            Rung::Inside { spectrum, .. } => spectrum,
-            Rung::Surface => return off(self.no_inside()),
-            _ => return off(self.not_clear()),
-        };
-        let disperses = |material: &&Material| material.dispersion != Dispersion::None;
-        let others = self.scene.objects.iter().map(|object| &object.material).filter(|material| material.is_clear());
-        let other = others.filter(disperses).find(|_| self.is_among());
-        let called = match Some(self.material).filter(disperses).or(other).unwrap_or(self.material).dispersion {
-            Dispersion::None => return off("dispersion 0"),
-            Dispersion::Abbe(value) => format!("dispersion {} (V_d {})", short(value), short(20.0 / value)),
-            Dispersion::Sellmeier(mineral) => {
-                format!("Sellmeier equation of {} (V_d {})", mineral.name(), short(mineral.abbe_number()))
-            }
-        };
-        if spectrum == Spectrum::One {
-            return off(format!("the rung {} follows one index, though {called}", self.rung));
-        }
-        on(called)
-    }
-
-    fn instances(&self) -> Answer {
-        match &self.object.copies {
-            None => off("shown once"),
-            Some(_) if self.is_among() => off("light goes from one copy to another"),
-            Some(copies) if self.is_gem() => on(format!("{} copies of one shape", copies.places.len())),
-            Some(_) => off("drawn as one mesh: only clear stones are drawn by copies"),
-        }
-    }
-
-    fn footprint(&self) -> Answer {
-        match self.rung {
-            _ if !self.request.footprint => off("not asked for"),
-            Rung::Inside { geometry: Geometry::Walk, spectrum: Spectrum::Separate(count), .. } => {
-                off(format!("the rung {} follows {count} rays, each with edges of its own", self.rung))
-            }
-            Rung::Inside { geometry: Geometry::Walk, .. } => on("asked for"),
-            Rung::Inside { geometry, .. } => {
-                off(format!("the rung {} finds facets by {}, without a runner-up", self.rung, way_of(geometry)))
-            }
-            Rung::Surface => off(self.no_inside()),
-            _ => off(self.not_clear()),
-        }
-    }
-
-    fn screen_trace(&self) -> Answer {
-        match self.request.outside {
-            _ if !self.is_gem() => off(self.not_clear()),
-            _ if self.is_among() => off("light meets bodies by their triangles"),
-            Some(Outside::Screen) => self.meets("asked for, ", usize::MAX),
-            _ => off("not asked for"),
-        }
-    }
-
-    fn bounds_trace(&self) -> Answer {
-        match self.request.outside {
-            _ if !self.is_gem() => off(self.not_clear()),
-            _ if self.is_among() => off("light meets bodies by their triangles"),
-            _ if self.around().0 => off("light meets bodies by their triangles"),
-            Some(Outside::Bodies | Outside::Triangles) => self.meets("asked for, ", MOST_BODIES),
-            Some(other) => off(format!("asked for: {other}")),
-            None if self.request.quality == Quality::Fast => off("quality fast"),
-            None => self.meets("", MOST_BODIES),
-        }
-    }
-
-    /// Returns whether light that leaves the body may meet others, of which it meets the `most` largest.
-    fn meets(&self, called: &str, most: usize) -> Answer {
-        match self.scene.beside_stones().count() {
-            0 => off("all bodies are clear"),
-            1 => on(format!("{called}beside 1 body that is not clear")),
-            count if count > most => on(format!("{called}the {most} largest of {count} bodies that are not clear")),
-            count => on(format!("{called}beside {count} bodies that are not clear")),
         }
     }
 
@@ -739,15 +479,7 @@ impl Case<'_> {
 
     fn partial_transmission(&self) -> Answer {
         if self.is_gem() {
-            let clear = self.scene.objects.iter().filter(|_| self.is_among());
-            let partly = |object: &&Object| object.material.is_clear() && object.material.clear_share() < 1.0;
-            return match std::iter::once(self.object).chain(clear).find(partly) {
-                Some(object) if self.is_among() => {
-                    on(format!("transmissionFactor {} of {}", short(object.material.transmission), object.name))
-                }
-                Some(_) => off(format!("the rung {} draws clear bodies wholly clear", self.rung)),
-                None => off("clear bodies are wholly clear"),
-            };
+            return self.partly_clear();
         }
         let share = self.material.share_that_enters();
         let image = self.image(TextureSlot::DiffuseTransmission);

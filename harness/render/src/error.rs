@@ -156,3 +156,21 @@ pub enum RenderError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
+
+impl RenderError {
+    /// Returns an error if so many bytes are more than a storage buffer holds on every device; `what` names them.
+    pub(crate) fn unless_bound(bytes: u64, what: impl FnOnce() -> String) -> Result<(), Self> {
+        if bytes > largest_binding() { Err(Self::too_large(bytes, what())) } else { Ok(()) }
+    }
+
+    /// Returns that so many bytes are more than a storage buffer holds on every device.
+    pub(crate) fn too_large(bytes: u64, what: String) -> Self {
+        Self::TooLarge { what, bytes, limit: largest_binding() }
+    }
+}
+
+/// Returns the largest number of bytes that a storage buffer holds on every device.
+fn largest_binding() -> u64 {
+    let limits = wgpu::Limits::default();
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}

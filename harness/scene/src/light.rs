@@ -37,6 +37,13 @@ pub enum Light {
     },
 }
 
+/// Returns the irradiance by `lights` at a point of a surface with a unit `normal`, if nothing blocks them.
+#[must_use]
+pub fn irradiance(lights: &[Light], point: DVec3, normal: DVec3) -> DVec3 {
+    let arrivals = lights.iter().map(|light| light.arrival(point));
+    arrivals.map(|arrival| arrival.direction.dot(normal).max(0.0) * arrival.irradiance).sum()
+}
+
 /// Light that arrives at a point if nothing blocks it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {

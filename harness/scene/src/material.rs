@@ -291,6 +291,12 @@ impl Material {
         self.is_clear() && self.thickness == 0.0
     }
 
+    /// Whether the body is clear and has an inside.
+    #[must_use]
+    pub fn has_clear_inside(&self) -> bool {
+        self.is_clear() && !self.is_thin_wall()
+    }
+
     /// Returns the width of the slopes of a clear body's facets; 0 if it is polished, as it counts below
     /// [`POLISHED`](Self::POLISHED).
     #[must_use]
@@ -314,17 +320,14 @@ impl Material {
     /// Whether the normals between a triangle's corners reflect and refract in a clear body.
     #[must_use]
     pub fn is_smooth(&self, mesh: &Mesh) -> bool {
-        self.is_clear() && !self.is_thin_wall() && self.normals.are_smooth(mesh)
+        self.has_clear_inside() && self.normals.are_smooth(mesh)
     }
 
     /// Returns the share of the light that comes to the surface, and is not reflected, that enters: 0 for an opaque body, 1
     /// for one that scatters inside.
     #[must_use]
     pub fn clear_share(&self) -> f32 {
-        match self {
-            _ if self.scatters() => 1.0,
-            _ => self.transmission,
-        }
+        if self.scatters() { 1.0 } else { self.transmission }
     }
 
     /// Whether no light enters: neither clear nor scattering.

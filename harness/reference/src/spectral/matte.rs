@@ -5,7 +5,7 @@ use super::face::{Face, faces};
 use super::hit::{Hit, Place};
 use glam::DVec3;
 use lapidary_scene::harmonics::{self, COUNT};
-use lapidary_scene::{Environment, Light, Material, Object, Scene};
+use lapidary_scene::{Environment, Light, Material, Object, Scene, light};
 use std::f64::consts::PI;
 
 /// The matte bodies of a scene and the light on them. The default has none.
@@ -65,11 +65,8 @@ impl Mattes {
 
     fn sent_by(&self, matte: &Matte, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
         let normal = matte.faces.get(place.face).map_or(flat, |face| face.normal(point, flat));
-        let lights = self.lights.iter().map(|light| {
-            let arrival = light.arrival(point);
-            arrival.direction.dot(normal).max(0.0) * arrival.irradiance
-        });
-        matte.reflectance * (harmonics::irradiance(&self.around, normal) + lights.sum::<DVec3>())
+        let irradiance = harmonics::irradiance(&self.around, normal) + light::irradiance(&self.lights, point, normal);
+        matte.reflectance * irradiance
     }
 }
 

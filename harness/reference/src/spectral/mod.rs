@@ -326,6 +326,7 @@ impl<'scene> Job<'scene> {
         let view = View::new(&scene.camera, settings.width, settings.height);
         let bodies = Bodies::with_mattes(&scene.objects, settings.geometry, mattes);
         let around_eye = Within::around(scene.camera.eye, &scene.objects);
+        let surfaces: Vec<Surface> = scene.objects.iter().map(surface).collect();
         Self {
             view,
             surroundings: Surroundings {
@@ -333,7 +334,8 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                surfaces: scene.objects.iter().map(surface).collect(),
+                is_rough: surfaces.iter().any(|surface| surface.alpha > 0.0),
+                surfaces,
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
             },
@@ -364,7 +366,7 @@ impl<'scene> Job<'scene> {
             sample.radiance = radiance;
             return sample;
         }
-        let paths = if self.surroundings.is_rough() { ROUGH_PATHS } else { 1 };
+        let paths = if self.surroundings.is_rough { ROUGH_PATHS } else { 1 };
         let share = f64::from(paths).recip();
         let mut random = generator(SEED, counter);
         for Band { weights, count, optics } in &self.spectrum {
@@ -404,9 +406,10 @@ fn surface(object: &Object) -> Surface {
     let material = &object.material;
     let alpha = f64::from(material.facet_slope());
     // What an opaque body does not cover, goes straight on, as through a thin wall of index 1.
-    let (is_thin, clear) = match material.is_opaque() {
-        true => (true, 1.0 - material.covered_share()),
-        false => (material.is_thin_wall(), material.clear_share()),
+    let (is_thin, clear) = if material.is_opaque() {
+        (true, 1.0 - material.covered_share())
+    } else {
+        (material.is_thin_wall(), material.clear_share())
     };
     Surface { is_thin, alpha, clear: f64::from(clear) }
 }

@@ -53,6 +53,8 @@ pub(super) struct Surroundings<'scene> {
     /// Lights whose discs are seen, with their radii: of a sun the sine of the angle.
     pub(super) lights: Vec<(Light, f64)>,
     pub(super) surfaces: Vec<Surface>,
+    /// Whether any of them is rough, so that light takes one of several ways there.
+    pub(super) is_rough: bool,
     /// The clear bodies around the eye.
     pub(super) around_eye: Within,
     pub(super) environment: &'scene Environment,
@@ -158,11 +160,6 @@ impl PartialEq for Ray {
 impl Eq for Ray {}
 
 impl Surroundings<'_> {
-    /// Whether light takes one of several ways at some surface.
-    pub(super) fn is_rough(&self) -> bool {
-        self.surfaces.iter().any(|surface| surface.alpha > 0.0)
-    }
-
     /// Finds the first surface that a camera ray meets, of whatever body; `None` if it meets none.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         if !self.around_eye.is_empty() {
@@ -233,7 +230,6 @@ impl Surroundings<'_> {
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
         // The strongest ray, if known without asking the heap: usually one under total reflection.
         let mut strongest: Option<Ray> = None;
-        let is_rough = self.is_rough();
         let mut hits = 1;
         while pending >= self.energy_bound
             && hits < MOST_HITS
@@ -249,7 +245,7 @@ impl Surroundings<'_> {
             };
             // The many rays of a tree would wander between rough surfaces one by one.
             let (reflectance, transmitted) = match transmitted {
-                Some(ray) if is_rough && hits > MOST_SPLIT && reflectance > 0.0 => {
+                Some(ray) if self.is_rough && hits > MOST_SPLIT && reflectance > 0.0 => {
                     let reflects = random.random::<f64>() < reflectance;
                     let whole = Ray { throughput: ray.throughput / (1.0 - reflectance), ..ray };
                     if reflects { (1.0, None) } else { (0.0, Some(whole)) }
@@ -399,9 +395,8 @@ impl Arrival {
         if self.surface.is_thin {
             return self.scatter_thin(optics[self.place.body], random);
         }
-        let (Some(relative_index), through) = self.cross(order, optics) else {
-            return self.cross(order, optics).1;
-        };
+        let (relative_index, through) = self.cross(order, optics);
+        let Some(relative_index) = relative_index else { return through };
         let (direction, passes) =
             rough::scatter(random, self.direction, self.shading, self.surface.alpha, relative_index);
         let direction = self.on_side(direction, passes);

@@ -2,9 +2,9 @@
 
 use crate::error::RenderError;
 use crate::frame::{Buffer, Builder};
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 use lapidary_plan::thickness;
-use lapidary_scene::{Bvh, Mesh, Scene, harmonics};
+use lapidary_scene::{Bvh, Mesh, Scene, harmonics, light};
 use std::f64::consts::PI;
 
 /// Bindings in group 0: the nodes, and the corners.
@@ -38,11 +38,8 @@ impl Beside {
             let color = thickness::color(&object.material, &object.mesh.colors).as_dvec3() / PI;
             for corners in triangles(&object.mesh) {
                 for (position, normal) in corners {
-                    let lights = scene.lights.iter().map(|light| {
-                        let arrival = light.arrival(position.as_dvec3());
-                        arrival.direction.dot(normal.as_dvec3()).max(0.0) * arrival.irradiance
-                    });
-                    let irradiance = harmonics::irradiance(around, normal.as_dvec3()) + lights.sum::<DVec3>();
+                    let by_lights = light::irradiance(&scene.lights, position.as_dvec3(), normal.as_dvec3());
+                    let irradiance = harmonics::irradiance(around, normal.as_dvec3()) + by_lights;
                     positions.push(position);
                     sent.push((color * irradiance).min(DVec3::splat(MOST_SENT)).as_vec3());
                 }
@@ -61,12 +58,7 @@ impl Beside {
             corner.w = packed((sent[*index as usize] / largest).min(Vec3::ONE));
         }
         corners.push(largest.extend(0.0));
-        let limits = wgpu::Limits::default();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let bytes = (corners.len() * size_of::<Vec4>()) as u64;
-        if bytes > limit {
-            return Err(RenderError::TooLarge { what: "the triangles beside stones".to_owned(), bytes, limit });
-        }
+        RenderError::unless_bound(size_of_val(&corners[..]) as u64, || "the triangles beside stones".to_owned())?;
         let words = bvh.words();
         Ok(builder.of_object("", |builder| Self {
             nodes: builder.storage("nodes beside", bytemuck::cast_slice(&words)),

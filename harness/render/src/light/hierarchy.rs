@@ -70,12 +70,7 @@ impl Hierarchy {
             triangles[bodies[body as usize].object].push(number);
         }
         let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize].extend(0.0)).collect();
-        let limits = wgpu::Limits::default();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let bytes = size_of_val(&corners[..]) as u64;
-        if bytes > limit {
-            return Err(RenderError::TooLarge { what: "the scene's triangles".to_owned(), bytes, limit });
-        }
+        RenderError::unless_bound(size_of_val(&corners[..]) as u64, || "the scene's triangles".to_owned())?;
         let start = Record::new("SceneStart")
             .with("within", within)
             .with("around", mean_radiance(&settings.environment))
@@ -182,8 +177,7 @@ fn record(material: &Material, colors: &[Vec3]) -> Record {
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.
 fn around(eye: Vec3, bodies: &[Body], mesh: impl Fn(&Body) -> Mesh) -> UVec4 {
-    let has_inside = |body: &Body| body.material.is_clear() && !body.material.is_thin_wall();
-    let is_around = |body: &Body| has_inside(body) && mesh(body).encloses(eye);
+    let is_around = |body: &Body| body.material.has_clear_inside() && mesh(body).encloses(eye);
     let mut within = [NONE; 4];
     let found = (0..).zip(bodies).filter(|(_, body)| is_around(body)).map(|(number, _): (u32, _)| 2 * number);
     within.iter_mut().zip(found).for_each(|(place, number)| *place = number);

@@ -14,7 +14,7 @@ use crate::settings::Settings;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_plan::Effect;
 use lapidary_scene::light::Falloff;
-use lapidary_scene::{Light, Scene, harmonics};
+use lapidary_scene::{Light, Object, Scene, harmonics};
 use std::cell::OnceCell;
 
 /// Binding of the part `glints` in group 0.
@@ -113,6 +113,12 @@ impl<'a> Lighting<'a> {
         }
         let made = Beside::new(builder, self.scene, self.around())?;
         Ok(*self.beside.get_or_init(|| made))
+    }
+
+    /// Returns the number of an object that is borrowed from the scene.
+    pub(crate) fn number_of(&self, object: &Object) -> usize {
+        let number = self.scene.objects.iter().position(|other| std::ptr::eq(other, object));
+        number.expect("what is drawn is borrowed from the scene")
     }
 
     /// Returns the environment's texture.

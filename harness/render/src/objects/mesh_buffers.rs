@@ -15,13 +15,11 @@ pub(crate) fn vertices<'a>(
     indices: &[u32],
     parts: impl IntoIterator<Item = &'a [u8]>,
 ) -> Result<u32, RenderError> {
-    let limits = wgpu::Limits::default();
-    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
-    if let Some(bytes) = parts.into_iter().map(|part| part.len() as u64).find(|bytes| *bytes > limit) {
-        return Err(too_large(bytes));
+    let what = || format!("mesh `{}`", object.name);
+    for part in parts {
+        RenderError::unless_bound(part.len() as u64, what)?;
     }
-    u32::try_from(indices.len()).map_err(|_| too_large(size_of_val(indices) as u64))
+    u32::try_from(indices.len()).map_err(|_| RenderError::too_large(size_of_val(indices) as u64, what()))
 }
 
 /// A mesh's positions and indices: all that keeps light from others.

@@ -13,7 +13,7 @@ use crate::objects::part::Drawn;
 use crate::settings::Settings;
 use glam::Vec3;
 use lapidary_plan::{Effect, Rung};
-use lapidary_scene::{Copies, Material, Object, Place, Scene};
+use lapidary_scene::{Copies, Material, Object, Place};
 
 /// Adds an object to the frame, with the resources that `pipeline` reads.
 pub(crate) fn add(
@@ -77,13 +77,11 @@ pub(crate) fn add(
 pub(crate) fn add_among(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
-    Drawn { object, name, .. }: &Drawn<'_>,
-    (hierarchy, scene): (&Hierarchy, &Scene),
+    Drawn { name, .. }: &Drawn<'_>,
+    (hierarchy, number): (&Hierarchy, usize),
     rung: Rung,
 ) -> Result<Body, RenderError> {
     check_steps(builder, rung, hierarchy.steps)?;
-    let number = scene.objects.iter().position(|other| std::ptr::eq(other, *object));
-    let number = number.expect("what is drawn is borrowed from the scene");
     let triangles = hierarchy.triangles(number);
     let vertices = 3 * triangles.len() as u32;
     let (wavelengths, indices) = of_bodies(hierarchy.materials(), rung.spectrum());

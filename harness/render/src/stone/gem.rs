@@ -68,7 +68,7 @@ pub(crate) fn pass(
         for drawn in objects {
             bodies.push(if part.rung.geometry() == Geometry::Scene {
                 let hierarchy = lighting.hierarchy(builder)?;
-                body::add_among(builder, pipeline, drawn, (hierarchy, lighting.scene), part.rung)?
+                body::add_among(builder, pipeline, drawn, (hierarchy, lighting.number_of(drawn.object)), part.rung)?
             } else {
                 body::add(builder, pipeline, drawn, part.rung, part.settings)?
             });

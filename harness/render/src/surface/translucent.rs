@@ -114,10 +114,9 @@ fn add(
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
-    let number = light.0.scene.objects.iter().position(|other| std::ptr::eq(other, *object)).unwrap_or_default();
     // Light that does not enter keeps its own, even if the matter is black.
     let color = thickness::color(material, &mesh.colors).max(Vec3::splat(1e-6));
-    let record = builder.record("material", record_of((material, color), decisions, number as u32));
+    let record = builder.record("material", record_of((material, color), decisions, light.0.number_of(object) as u32));
     let shape = light.0.shapes.of(builder, name, object)?;
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()

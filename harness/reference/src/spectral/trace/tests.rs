@@ -38,6 +38,7 @@ fn surroundings<'a>(
         order: Order::of(objects),
         lights: Vec::new(),
         surfaces: vec![POLISHED; objects.len()],
+        is_rough: false,
         around_eye,
         environment,
         energy_bound,

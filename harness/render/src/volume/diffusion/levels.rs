@@ -190,8 +190,9 @@ impl Levels {
         }
         if !self.further.is_empty() {
             for level in &self.levels {
-                let copied = |to| Pass::Copy { from: level.tiles.workgroups, to, bytes: 12 };
-                level.open.into_iter().for_each(|open| builder.pass(copied(open)));
+                if let Some(to) = level.open {
+                    builder.pass(Pass::Copy { from: level.tiles.workgroups, to, bytes: 12 });
+                }
             }
             builder.compute(RECIPE, self.further.clone(), self.options.most_cycles - self.options.cycles);
         }

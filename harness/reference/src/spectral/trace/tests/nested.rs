@@ -123,6 +123,7 @@ fn a_ball_within_a_ball_is_magnified_by_its_index() {
             order: Order::of(&objects),
             lights: Vec::new(),
             surfaces: vec![POLISHED; objects.len()],
+            is_rough: false,
             around_eye: Within::default(),
             environment: &environment,
             energy_bound: 1e-6,
