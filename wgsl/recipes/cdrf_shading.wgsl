@@ -4,7 +4,8 @@
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, diffusion, environment, fresnel, half_space, microfacet, reflective_shadow_map
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow
-// parts: stone_shadow, harmonics, reflection, scattering_law, material_textures, sample_rank
+// parts: stone_shadow, harmonics, reflection, scattering_law, texture_tangents, material_textures
+// parts: sample_rank
 // compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,

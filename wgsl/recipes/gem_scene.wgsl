@@ -4,7 +4,8 @@
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
 // requires: absorption, bvh_trace, cdrf, environment, fresnel, microfacet, proxy_geometry, random_walk, refraction
-// parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank
+// parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank, texture_tangents
+// parts: scene_images
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
 // set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
@@ -211,12 +212,14 @@ fn scene_without(within: vec4u, body: u32) -> vec4u {
     return select(within, vec4u(within.yzw, SCENE_NONE), within >= vec4u(2u * body));
 }
 
-// The colour that light takes from the matter that it is in, if it has not taken it yet.
-fn scene_color(within: vec4u) -> vec3f {
+// The colour that light takes from the matter that it is in, if it has not taken it yet. `painted` is the factor of the
+// body whose surface it crosses.
+fn scene_color(within: vec4u, crossed: u32, painted: vec3f) -> vec3f {
     if (within.x == SCENE_NONE || (within.x & 1u) != 0u) {
         return vec3f(1.0f);
     }
-    return scene_bodies[within.x >> 1u].base_color;
+    let color = scene_bodies[within.x >> 1u].base_color;
+    return select(color, painted * color, (within.x >> 1u) == crossed);
 }
 
 // The bodies around a ray once light has taken the colour of the first.
@@ -246,6 +249,15 @@ fn scene_normal(triangle: u32, barycentrics: vec2f, flat_normal: vec3f) -> vec3f
         return flat_normal;
     }
     return normal * inverseSqrt(squared);
+}
+
+// The normal by which a place on a triangle is matt.
+fn scene_matte_normal(hit: BvhTraceHit, place: ScenePlace, flat_normal: vec3f) -> vec3f {
+    let normal = scene_normal(hit.triangle, hit.barycentrics, flat_normal);
+    if (EFFECT_NORMAL_TEXTURE) {
+        return scene_image_normal(place, normal);
+    }
+    return normal;
 }
 
 // A place on a curved surface.
@@ -418,7 +430,7 @@ fn scene_split(
     direction: vec3f, facing: vec3f, smooth_normal: vec3f, relative_index: f32, alpha: f32
 ) -> SceneSplit {
     var normal = facing;
-    if (EFFECT_SMOOTH) {
+    if (EFFECT_SMOOTH || EFFECT_NORMAL_TEXTURE) {
         if (dot(smooth_normal, direction) < 0.0f) {
             normal = smooth_normal;
         }
@@ -434,7 +446,7 @@ fn scene_split(
     if (!refracted.total) {
         split.reflectance = fresnel_dielectric(-dot(direction, normal), relative_index);
     }
-    if (EFFECT_SMOOTH) {
+    if (EFFECT_SMOOTH || EFFECT_NORMAL_TEXTURE) {
         if (dot(split.reflected, facing) <= 0.0f) {
             split.reflected = refraction_reflect(direction, facing);
         }
@@ -470,16 +482,39 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     let outward = proxy_geometry_face_normal(a.xyz, b, c);
     let enters = dot(outward, ray.direction) < 0.0f;
     let facing = select(-outward, outward, enters);
+    var painted = vec3f(1.0f);
+    var clear = body.clear;
+    var place = ScenePlace();
+    if (EFFECT_BASE_COLOR_TEXTURE || EFFECT_NORMAL_TEXTURE || EFFECT_TRANSMISSION_TEXTURE || EFFECT_VERTEX_COLOR) {
+        place = scene_place(hit.triangle, hit.barycentrics, length(ray.position - view.eye));
+    }
+    if (EFFECT_BASE_COLOR_TEXTURE) {
+        let color = scene_image_color(place);
+        painted *= color.rgb;
+        if (EFFECT_COVERAGE) {
+            if (body.kind == SCENE_OPAQUE && color.w >= 0.0f) {
+                clear = 1.0f - color.w;
+            }
+        }
+    }
+    if (EFFECT_TRANSMISSION_TEXTURE) {
+        if (body.kind != SCENE_OPAQUE) {
+            clear *= scene_image_transmission(place);
+        }
+    }
+    if (EFFECT_VERTEX_COLOR) {
+        painted *= place.color;
+    }
     var passes = true;
     if (EFFECT_AROUND) {
         // Its back is not there.
         if (body.kind == SCENE_OPAQUE && enters) {
-            let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
-            let sent = scene_sent(body.base_color, ray.position, normal);
+            let normal = scene_matte_normal(hit, place, outward);
+            let sent = scene_sent(painted * body.base_color, ray.position, normal);
             var covered = ray.throughput;
             if (EFFECT_COVERAGE) {
-                covered = (1.0f - body.clear) * ray.throughput;
-                ray.throughput *= body.clear;
+                covered = (1.0f - clear) * ray.throughput;
+                ray.throughput *= clear;
                 scene_wait(ray);
             }
             scene_found += covered * sent;
@@ -499,15 +534,24 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         var is_surface = false;
         if (body.kind == SCENE_THIN_WALL) {
             var normal = facing;
+            if (EFFECT_NORMAL_TEXTURE) {
+                let bent = scene_image_normal(place, outward);
+                normal = select(facing, select(-bent, bent, enters), dot(bent, ray.direction) < 0.0f == enters);
+            }
             if (EFFECT_ROUGH) {
                 if (body.alpha > 0.0f) {
                     let random = scene_evenly();
                     normal = microfacet_facet(
-                        facing, -ray.direction, body.alpha, random.x, random_walk_azimuth(random.y)
+                        normal, -ray.direction, body.alpha, random.x, random_walk_azimuth(random.y)
                     );
                 }
             }
             split.reflected = refraction_reflect(ray.direction, normal);
+            if (EFFECT_NORMAL_TEXTURE) {
+                if (body.alpha == 0.0f && dot(split.reflected, facing) <= 0.0f) {
+                    split.reflected = refraction_reflect(ray.direction, facing);
+                }
+            }
             if (EFFECT_ROUGH) {
                 if (body.alpha > 0.0f) {
                     // What goes through is turned as what is reflected, on the other side.
@@ -518,21 +562,24 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
             // Light goes back and forth between the wall's two interfaces. Its back is not there.
             let once = select(0.0f, fresnel_dielectric(-dot(ray.direction, normal), body.index), enters);
             split.reflectance = 2.0f * once / (1.0f + once);
-            color = select(vec3f(1.0f), body.base_color, enters);
+            color = select(vec3f(1.0f), painted * body.base_color, enters);
             is_surface = enters;
         } else if ((behind.x >> 1u) != (ray.within.x >> 1u)) {
             // Otherwise there is the same matter on both sides, and no surface.
-            var smooth_normal = facing;
+            var smooth_normal = outward;
             if (EFFECT_SMOOTH) {
                 let curved = scene_curved(hit, ray.position, ray.direction, outward);
                 ray.position = curved.position;
                 smooth_normal = curved.normal;
-                smooth_normal = select(-smooth_normal, smooth_normal, enters);
             }
+            if (EFFECT_NORMAL_TEXTURE) {
+                smooth_normal = scene_image_normal(place, smooth_normal);
+            }
+            smooth_normal = select(-smooth_normal, smooth_normal, enters);
             let relative_index = scene_index(behind, wavelength) / scene_index(ray.within, wavelength);
             split = scene_split(ray.direction, facing, smooth_normal, relative_index, body.alpha);
             is_surface = enters;
-            color = scene_color(ray.within) * scene_color(behind);
+            color = scene_color(ray.within, number, painted) * scene_color(behind, number, painted);
             behind = scene_colored(behind);
         }
         var reflected = ray;
@@ -556,15 +603,15 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         }
         ray.throughput *= color;
         if (EFFECT_PARTIAL_TRANSMISSION) {
-            if (is_surface && body.clear < 1.0f) {
+            if (is_surface && clear < 1.0f) {
                 var entering = ray.throughput;
                 if (EFFECT_ROUGH) {
                     entering = f32(!split.stay.y) * ray.throughput + f32(!split.stay.x) * reflected.throughput;
-                    reflected.throughput *= select(body.clear, 1.0f, split.stay.x);
+                    reflected.throughput *= select(clear, 1.0f, split.stay.x);
                 }
-                let normal = scene_normal(hit.triangle, hit.barycentrics, outward);
-                scene_found += (1.0f - body.clear) * entering * scene_sent(vec3f(1.0f), ray.position, normal);
-                ray.throughput *= select(body.clear, 1.0f, split.stay.y);
+                let normal = scene_matte_normal(hit, place, outward);
+                scene_found += (1.0f - clear) * entering * scene_sent(vec3f(1.0f), ray.position, normal);
+                ray.throughput *= select(clear, 1.0f, split.stay.y);
             }
         }
         scene_wait(reflected);

@@ -4,7 +4,7 @@ use crate::casting::bounds;
 use crate::remembered::Remembered;
 use glam::{Mat4, Vec2, Vec3};
 use lapidary_scene::normals::{self, Normals};
-use lapidary_scene::{Bounds, Mesh, Object, Scene, clip_from_world};
+use lapidary_scene::{Bounds, Mesh, Object, Scene, TextureSlot, clip_from_world};
 use std::collections::BTreeMap;
 
 /// Number of vertices of a body of which it is asked whether they lie in the other.
@@ -169,7 +169,19 @@ pub(crate) fn beside(object: &Object, scene: &Scene, size: [u32; 2]) -> Option<S
 
 /// Whether a body that is not clear covers only a share of what is behind it.
 pub(crate) fn is_sheer(object: &Object) -> bool {
-    !object.material.is_clear() && object.material.covered_share() < 1.0
+    !object.material.is_clear() && !object.material.covers_all()
+}
+
+/// Whether a body's surface varies by the image in a slot.
+pub(crate) fn shows(object: &Object, slot: TextureSlot) -> bool {
+    let Object { mesh, material, .. } = object;
+    material.texture(slot).is_some() && material.calls_for(slot) && !mesh.uvs.is_empty()
+}
+
+/// Whether a share of the light does not enter a clear body, somewhere.
+pub(crate) fn is_partly_clear(object: &Object) -> bool {
+    let material = &object.material;
+    material.is_clear() && (material.clear_share() < 1.0 || shows(object, TextureSlot::Transmission))
 }
 
 /// Returns the first body that is not clear and whose box reaches around a clear one's middle.

@@ -7,7 +7,7 @@ use super::quality::Technique;
 use super::thickness::Thickness;
 use crate::request::Scattering;
 use crate::{Quality, Request, Rung};
-use lapidary_scene::{Object, Scene, Shape};
+use lapidary_scene::{Object, Scene, Shape, TextureSlot};
 
 /// How an object is drawn: by a rung that the user or the material names, or by a technique.
 pub(super) enum Choice {
@@ -64,8 +64,19 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if has(Effect::Rough) && object.material.facet_slope() > 0.0 {
         return Some(format!("roughness {}", short(object.material.roughness)));
     }
-    if has(Effect::PartialTransmission) && object.material.clear_share() < 1.0 {
+    if has(Effect::PartialTransmission) && among::is_partly_clear(object) {
         return Some("a share of the light does not enter".to_owned());
+    }
+    let images = [
+        (Effect::BaseColorTexture, TextureSlot::BaseColor),
+        (Effect::NormalTexture, TextureSlot::Normal),
+        (Effect::TransmissionTexture, TextureSlot::Transmission),
+    ];
+    if let Some((_, slot)) = images.into_iter().find(|(effect, slot)| has(*effect) && among::shows(object, *slot)) {
+        return Some(format!("it has a {}", slot.name()));
+    }
+    if has(Effect::VertexColor) && !object.mesh.colors.is_empty() {
+        return Some("its vertices have colours".to_owned());
     }
     // Asked for what light meets, a user has chosen another way.
     if request.outside.is_some() {

@@ -459,6 +459,9 @@ impl Case<'_> {
     }
 
     fn image(&self, slot: TextureSlot) -> Answer {
+        if self.is_gem() {
+            return self.image_met(slot);
+        }
         let Some(texture) = self.material.texture(slot) else {
             return off(format!("no {}", slot.name()));
         };
@@ -492,6 +495,9 @@ impl Case<'_> {
     }
 
     fn transmission_texture(&self) -> Answer {
+        if self.is_gem() {
+            return self.image_met(TextureSlot::Transmission);
+        }
         let found = self.image(TextureSlot::DiffuseTransmission);
         let missing = self.missing(Effect::PartialTransmission, self.partial_transmission());
         if found.0 { missing.unwrap_or(found) } else { found }
@@ -517,6 +523,9 @@ impl Case<'_> {
     }
 
     fn vertex_color(&self) -> Answer {
+        if self.is_gem() {
+            return self.colors_met();
+        }
         if self.object.mesh.colors.is_empty() {
             return off("no colours of vertices");
         }

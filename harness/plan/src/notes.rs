@@ -124,13 +124,14 @@ impl Case<'_> {
     /// Returns the images, and the colours of vertices, that the rung leaves out.
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
-        let draws = self.rung.draws_images();
+        let is_followed = material.is_clear() && (self.rung.is_among() || self.rung == Rung::Reference);
+        let draws = self.rung.draws_images() || is_followed;
         let spreads = self.rung.spreads_by_curvature();
         let slots = [
             (TextureSlot::BaseColor, draws),
             (TextureSlot::Normal, draws),
             (TextureSlot::Thickness, spreads),
-            (TextureSlot::Transmission, false),
+            (TextureSlot::Transmission, is_followed),
             (TextureSlot::DiffuseTransmission, spreads || !material.scatters()),
         ];
         let lost = |(slot, drawn): &(TextureSlot, bool)| {
@@ -138,7 +139,7 @@ impl Case<'_> {
         };
         let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
         let by_factor = self.rung == Rung::Reference && material.base_color_texture.is_none();
-        let alpha = (!draws && !by_factor && !material.covers_all()).then_some("alphaMode");
+        let alpha = ((!draws || is_followed) && !by_factor && !material.covers_all()).then_some("alphaMode");
         slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).chain(alpha).collect()
     }
 

@@ -73,6 +73,15 @@ pub enum RenderError {
         /// Largest possible number of views.
         limit: u32,
     },
+    /// More images of clear bodies, and of others that light from them meets, than a texture has layers.
+    #[error(
+        "the bodies' materials have more than {limit} images, which light through clear bodies would meet; take fewer, or leave them out: \
+         --without base_color_texture,normal_texture,transmission_texture"
+    )]
+    TooManyImages {
+        /// Largest possible number of images.
+        limit: usize,
+    },
     /// A recipe is not valid.
     #[error(transparent)]
     Kernel(#[from] crate::frame::shader::ShaderError),

@@ -2,13 +2,12 @@
 //   surface, how thick it is, and whether light enters.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
-//   2, 2011, for normals blurred per colour; Mikkelsen, "Surface Gradient-Based Bump Mapping Framework",
-//   JCGT 9 (2020), for tangents from derivatives.
+//   2, 2011, for normals blurred per colour.
 //
 // Call what samples an image outside all branches: the level of the image follows from the derivatives of its
 // coordinates.
 //
-// A recipe adds: nothing.
+// A recipe adds: the part texture_tangents.
 
 // The diffuse colour varies over the surface. Called for by a material's baseColorTexture.
 override EFFECT_BASE_COLOR_TEXTURE: bool = false;
@@ -47,24 +46,6 @@ struct TexturePlace {
 
 fn texture_place(place: TexturePlace, uv: vec2f) -> vec2f {
     return vec2f(dot(place.u, vec3f(uv, 1.0f)), dot(place.v, vec3f(uv, 1.0f)));
-}
-
-// Unit vectors along which u and v grow over the surface; 0 where the coordinates do not change.
-struct TextureTangents {
-    u: vec3f,
-    v: vec3f,
-}
-
-// From the derivatives of position and coordinates along the screen, and the unit normal.
-fn texture_tangents(normal: vec3f, position_x: vec3f, position_y: vec3f, uv_x: vec2f, uv_y: vec2f) -> TextureTangents {
-    let across_x = cross(position_y, normal);
-    let across_y = cross(normal, position_x);
-    // Which way the screen's axes turn about the normal depends on where y points.
-    let turn = sign(dot(position_x, across_x));
-    let u = turn * (across_x * uv_x.x + across_y * uv_y.x);
-    let v = turn * (across_x * uv_x.y + across_y * uv_y.y);
-    // Squares of tiny lengths underflow.
-    return TextureTangents(u * inverseSqrt(max(dot(u, u), 1e-30f)), v * inverseSqrt(max(dot(v, v), 1e-30f)));
 }
 
 // The unit normal of a layer of the texture, at coordinates of its image.

@@ -5,7 +5,7 @@ use crate::among;
 use crate::numbers::{short, triple};
 use crate::{Effect, Geometry, MOST_BODIES, Outside, Quality, Rung, Spectrum};
 use glam::Vec3;
-use lapidary_scene::{Dispersion, Material, Object, Shape};
+use lapidary_scene::{Dispersion, Material, Object, Shape, TextureSlot};
 
 /// Describes how a rung finds the facets that rays meet inside a stone.
 fn way_of(geometry: Geometry) -> &'static str {
@@ -272,12 +272,39 @@ impl Case<'_> {
 
     /// Answers for clear bodies of which a share of the light does not enter some.
     pub(super) fn partly_clear(&self) -> Answer {
-        match self.first(|object| object.material.is_clear() && object.material.clear_share() < 1.0) {
+        match self.first(among::is_partly_clear) {
+            Some(object) if self.is_among() && object.material.clear_share() == 1.0 => {
+                on(format!("transmissionTexture of {}", object.name))
+            }
             Some(object) if self.is_among() => {
                 on(format!("transmissionFactor {} of {}", short(object.material.transmission), object.name))
             }
             Some(_) => off(format!("the rung {} draws clear bodies wholly clear", self.rung)),
             None => off("clear bodies are wholly clear"),
+        }
+    }
+
+    /// Returns the first body that is as wanted, of those whose surface light through this one meets.
+    fn first_met(&self, wanted: impl Fn(&Object) -> bool) -> Option<&Object> {
+        let meets_opaque = self.is_among() && self.around().0;
+        self.first(|object| (object.material.is_clear() || meets_opaque) && wanted(object))
+    }
+
+    /// Answers for an image of this body, or of any that its light meets.
+    pub(super) fn image_met(&self, slot: TextureSlot) -> Answer {
+        match self.first_met(|object| among::shows(object, slot)) {
+            Some(object) if self.is_among() => on(format!("{} of {}", slot.name(), object.name)),
+            Some(_) => off(format!("the rung {} draws factors alone", self.rung)),
+            None => off(format!("no {} with texture coordinates and a factor above 0", slot.name())),
+        }
+    }
+
+    /// Answers for the colours of vertices of this body, or of any that its light meets.
+    pub(super) fn colors_met(&self) -> Answer {
+        match self.first_met(|object| !object.mesh.colors.is_empty()) {
+            Some(object) if self.is_among() => on(format!("{} has colours of vertices", object.name)),
+            Some(_) => off(format!("the rung {} draws factors alone", self.rung)),
+            None => off("no colours of vertices"),
         }
     }
 }

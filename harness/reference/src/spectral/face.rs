@@ -52,12 +52,18 @@ impl Face {
     }
 
     /// Returns the weights of the corners at a point above or below the face, which add up to 1.
-    fn weights(&self, point: DVec3) -> DVec3 {
+    pub(super) fn weights(&self, point: DVec3) -> DVec3 {
         let [a, b, c] = self.corners;
         let across = (b - a).cross(c - a);
         // The area opposite to a corner is the corner's weight.
         let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(across) / across.length_squared();
         DVec3::new(weight(b, c), weight(c, a), weight(a, b))
+    }
+
+    /// Returns the edges from the first corner to the others.
+    pub(super) fn edges(&self) -> [DVec3; 2] {
+        let [a, b, c] = self.corners;
+        [b - a, c - a]
     }
 
     fn mean(&self, weights: DVec3) -> DVec3 {

@@ -5,6 +5,7 @@ use super::cells::Cells;
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
 use super::matte::Mattes;
+use super::paint::{Paint, Painted};
 use super::within::Within;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
@@ -28,6 +29,8 @@ pub(crate) struct Bodies {
     /// Whether another body may lie within each, or share space with it: their boxes meet.
     shares: Vec<bool>,
     mattes: Mattes,
+    /// For each body its images and colours of vertices, if it has any.
+    paints: Vec<Option<Paint>>,
     /// For each smooth clear body its faces, numbered like its triangles; empty if no body is smooth.
     smooth: Vec<Option<Vec<Face>>>,
     /// How far apart two surfaces still lie in one place: 2^12 roundings of the largest coordinate.
@@ -49,17 +52,23 @@ enum Body {
 impl Bodies {
     /// Takes all bodies as clear, whatever their materials are, and as flat.
     pub(crate) fn new(objects: &[Object], geometry: Geometry) -> Self {
-        Self::with_faces(objects, geometry, Mattes::default(), Vec::new())
+        Self::with_faces(objects, geometry, (Mattes::default(), Vec::new()), Vec::new())
     }
 
     /// Matte and smooth bodies are always met by their triangles, whose corners have the normals.
     pub(super) fn with_mattes(objects: &[Object], geometry: Geometry, mattes: Mattes) -> Self {
         let is_smooth = |object: &Object| object.material.is_smooth(&object.mesh);
         let smooth = objects.iter().map(|object| is_smooth(object).then(|| faces(&object.mesh))).collect();
-        Self::with_faces(objects, geometry, mattes, smooth)
+        let paints = objects.iter().map(Paint::of).collect();
+        Self::with_faces(objects, geometry, (mattes, paints), smooth)
     }
 
-    fn with_faces(objects: &[Object], geometry: Geometry, mattes: Mattes, smooth: Vec<Option<Vec<Face>>>) -> Self {
+    fn with_faces(
+        objects: &[Object],
+        geometry: Geometry,
+        (mattes, paints): (Mattes, Vec<Option<Paint>>),
+        smooth: Vec<Option<Vec<Face>>>,
+    ) -> Self {
         let extents: Vec<Extent> = objects
             .iter()
             .map(|object| {
@@ -70,7 +79,8 @@ impl Bodies {
             .collect();
         let body = |(number, (object, extent)): (usize, (&Object, &Extent))| {
             let is_smooth = matches!(smooth.get(number), Some(Some(_)));
-            let by_planes = geometry == Geometry::Planes && !mattes.has(number) && !is_smooth;
+            let is_painted = matches!(paints.get(number), Some(Some(_)));
+            let by_planes = geometry == Geometry::Planes && !mattes.has(number) && !is_smooth && !is_painted;
             match by_planes.then(|| planes_of_convex(&object.mesh)).flatten() {
                 Some(planes) => Body::Convex(Planes::new(planes, extent)),
                 None => Body::Triangles(Triangles::new(&object.mesh)),
@@ -78,7 +88,7 @@ impl Bodies {
         };
         let bodies = objects.iter().zip(&extents).enumerate().map(body).collect();
         let touching = reach_back(&extents);
-        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), mattes, smooth, touching }
+        Self { bodies, tree: Bvh::new(&extents), shares: sharing(&extents), mattes, paints, smooth, touching }
     }
 
     /// Finds the next surface that a ray within some bodies crosses, and which way; `left` is the face that it comes from.
@@ -114,12 +124,17 @@ impl Bodies {
     /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
     /// the body is clear.
     pub(super) fn sent(&self, hit: &Hit, point: DVec3) -> Option<DVec3> {
-        self.mattes.sent(hit, point)
+        self.mattes.sent(hit, point, self.paint(hit.place))
     }
 
     /// Returns the radiance that the matte share of a partly clear surface adds; `flat` is the face's normal.
-    pub(super) fn sent_in_part(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
-        self.mattes.sent_in_part(place, flat, point)
+    pub(super) fn sent_in_part(&self, (place, painted): (Place, Painted), flat: DVec3, point: DVec3) -> DVec3 {
+        self.mattes.sent_in_part((place, painted), flat, point, self.paint(place))
+    }
+
+    /// Returns the images and colours of vertices of a body, if it has any.
+    pub(super) fn paint(&self, place: Place) -> Option<&Paint> {
+        self.paints.get(place.body).and_then(Option::as_ref)
     }
 
     /// Whether a body's surface is curved between the corners of its faces.

@@ -3,9 +3,10 @@
 
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
+use super::paint::{Paint, Painted};
 use glam::DVec3;
 use lapidary_scene::harmonics::{self, COUNT};
-use lapidary_scene::{Environment, Light, Material, Object, Scene, light};
+use lapidary_scene::{Environment, Light, Object, Scene, light};
 use std::f64::consts::PI;
 
 /// The matte bodies of a scene and the light on them. The default has none.
@@ -22,8 +23,9 @@ pub(super) struct Mattes {
 }
 
 struct Matte {
-    /// Share of the light that does not enter, 1 for an opaque body.
-    share: f64,
+    /// Whether no light enters or passes, anywhere.
+    is_whole: bool,
+    is_opaque: bool,
     /// Factor from irradiance to radiance: the base colour / π; of a partly clear body, whose light has taken its colour as it
     /// came in, 1 / π.
     reflectance: DVec3,
@@ -34,7 +36,6 @@ struct Matte {
 impl Mattes {
     /// Takes the opaque and partly clear bodies of `scene` as matte, lit by its lights and `environment`.
     pub(super) fn new(scene: &Scene, environment: Option<&Environment>) -> Self {
-        let is_matte = |object: &Object| share(&object.material) > 0.0;
         if !scene.objects.iter().any(is_matte) {
             return Self::default();
         }
@@ -47,32 +48,46 @@ impl Mattes {
 
     /// Whether the triangles of this body are needed, as it is matte.
     pub(super) fn has(&self, body: usize) -> bool {
-        matches!(self.bodies.get(body), Some(Some(matte)) if matte.share == 1.0 || !matte.faces.is_empty())
+        matches!(self.bodies.get(body), Some(Some(matte)) if matte.is_whole || !matte.faces.is_empty())
     }
 
     /// Returns the radiance that a matte body sends from `hit`, which lies at `point`; `None` if
     /// the body is clear.
-    pub(super) fn sent(&self, hit: &Hit, point: DVec3) -> Option<DVec3> {
-        let matte = self.bodies.get(hit.place.body)?.as_ref().filter(|matte| matte.share == 1.0)?;
-        Some(self.sent_by(matte, hit.place, hit.normal, point))
+    pub(super) fn sent(&self, hit: &Hit, point: DVec3, paint: Option<&Paint>) -> Option<DVec3> {
+        let matte = self.bodies.get(hit.place.body)?.as_ref().filter(|matte| matte.is_whole)?;
+        let color = paint.map_or(DVec3::ONE, |paint| paint.at(hit.place, point).color);
+        Some(color * self.sent_by(matte, hit.place, hit.normal, point, paint))
     }
 
     /// Returns the radiance that the matte share of a body's surface adds.
-    pub(super) fn sent_in_part(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+    pub(super) fn sent_in_part(
+        &self,
+        (place, Painted { color, clear }): (Place, Painted),
+        flat: DVec3,
+        point: DVec3,
+        paint: Option<&Paint>,
+    ) -> DVec3 {
         let matte = self.bodies.get(place.body).and_then(Option::as_ref);
-        matte.map_or(DVec3::ZERO, |matte| matte.share * self.sent_by(matte, place, flat, point))
+        matte.map_or(DVec3::ZERO, |matte| {
+            // Of a clear body the light has taken its colour already.
+            let color = if matte.is_opaque { color } else { DVec3::ONE };
+            (1.0 - clear) * color * self.sent_by(matte, place, flat, point, paint)
+        })
     }
 
-    fn sent_by(&self, matte: &Matte, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+    fn sent_by(&self, matte: &Matte, place: Place, flat: DVec3, point: DVec3, paint: Option<&Paint>) -> DVec3 {
         let normal = matte.faces.get(place.face).map_or(flat, |face| face.normal(point, flat));
+        let normal = paint.map_or(normal, |paint| paint.bent(place, point, normal));
         let irradiance = harmonics::irradiance(&self.around, normal) + light::irradiance(&self.lights, point, normal);
         matte.reflectance * irradiance
     }
 }
 
-/// Returns the share of the light for which a surface is matte.
-fn share(material: &Material) -> f64 {
-    f64::from(if material.is_opaque() { material.covered_share() } else { 1.0 - material.clear_share() })
+/// Whether a surface is matte, for a share of the light at least, somewhere.
+fn is_matte(object: &Object) -> bool {
+    let material = &object.material;
+    let by_image = || Paint::of(object).is_some_and(|paint| paint.is_partly_clear());
+    if material.is_opaque() { material.covered_share() > 0.0 } else { material.clear_share() < 1.0 || by_image() }
 }
 
 impl Matte {
@@ -81,6 +96,7 @@ impl Matte {
         let color = if material.is_clear() { DVec3::ONE } else { material.base_color.as_dvec3() };
         let is_flat = material.is_clear() && !material.is_smooth(&object.mesh);
         let faces = if is_flat { Vec::new() } else { faces(&object.mesh) };
-        Self { share: share(material), reflectance: color / PI, faces }
+        let is_opaque = material.is_opaque();
+        Self { is_whole: is_opaque && material.covers_all(), is_opaque, reflectance: color / PI, faces }
     }
 }

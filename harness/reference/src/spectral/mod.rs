@@ -12,7 +12,8 @@
 //! a point. On a smooth clear body ([`Material::normals`](lapidary_scene::Material::normals)) the normals between a triangle's
 //! corners reflect and refract; where they would send light to the wrong side of the triangle, its own does. A clear body
 //! without thickness is a thin wall, which reflects and lets through what a pane of two interfaces does. Light is multiplied by the base colour on entry and
-//! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes.
+//! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes. Images of base colour, normals
+//! and transmission, and colours of vertices, hold at the point where light crosses the surface.
 //!
 //! An opaque body is matte: it sends the same radiance in all directions, base colour / π times the
 //! irradiance, and ends every ray that meets it. The irradiance is that of the recipe
@@ -28,6 +29,7 @@ mod face;
 pub(crate) mod geometry;
 pub(crate) mod hit;
 mod matte;
+mod paint;
 mod rough;
 mod trace;
 mod within;
@@ -42,6 +44,7 @@ use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Light, Object, SAMPLES, Scene};
 use matte::Mattes;
+use paint::{Paint, Painted};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surface, Surroundings};
@@ -404,14 +407,15 @@ fn lights(scene: &Scene) -> Vec<(Light, f64)> {
 /// Returns the properties of a body's surface.
 fn surface(object: &Object) -> Surface {
     let material = &object.material;
-    let alpha = f64::from(material.facet_slope());
-    // What an opaque body does not cover, goes straight on, as through a thin wall of index 1.
-    let (is_thin, clear) = if material.is_opaque() {
-        (true, 1.0 - material.covered_share())
-    } else {
-        (material.is_thin_wall(), material.clear_share())
-    };
-    Surface { is_thin, alpha, clear: f64::from(clear) }
+    let painted = Painted::of(material);
+    Surface {
+        // What an opaque body does not cover, goes straight on, as through a thin wall of index 1.
+        is_thin: material.is_opaque() || material.is_thin_wall(),
+        is_opaque: material.is_opaque(),
+        alpha: f64::from(material.facet_slope()),
+        painted,
+        is_partly_clear: painted.clear < 1.0 || Paint::of(object).is_some_and(|paint| paint.is_partly_clear()),
+    }
 }
 
 /// Returns the optical properties of a body at one wavelength.

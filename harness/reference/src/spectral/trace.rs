@@ -2,6 +2,7 @@
 
 use super::geometry::{Bodies, Way};
 use super::hit::{Hit, Place};
+use super::paint::Painted;
 use super::rough;
 use super::within::{Order, Within};
 use glam::DVec3;
@@ -40,10 +41,21 @@ pub(super) struct Optics {
 pub(super) struct Surface {
     /// Whether it is a thin wall: clear, without an inside.
     pub(super) is_thin: bool,
+    /// Whether it is opaque: what passes it passes beside it.
+    pub(super) is_opaque: bool,
     /// Width of its facets' slopes; 0 if it is polished.
     pub(super) alpha: f64,
-    /// Share of the light that comes from outside, and is not reflected, that enters.
-    pub(super) clear: f64,
+    /// What it has where no image says otherwise; at an arrival, what it has there.
+    pub(super) painted: Painted,
+    /// Whether a share of the light does not enter, somewhere.
+    pub(super) is_partly_clear: bool,
+}
+
+impl Surface {
+    /// Returns the factor of the base colour for light that passes.
+    fn color(&self) -> DVec3 {
+        if self.is_opaque { DVec3::ONE } else { self.painted.color }
+    }
 }
 
 /// The surroundings of a ray, whatever its wavelength.
@@ -172,7 +184,7 @@ impl Surroundings<'_> {
         }
         let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
         let surface = self.surfaces[hit.place.body];
-        if surface.alpha > 0.0 || surface.clear < 1.0 {
+        if surface.alpha > 0.0 || surface.is_partly_clear {
             return Some(Primary::FromEye(ray));
         }
         let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
@@ -309,9 +321,10 @@ impl Surroundings<'_> {
         // A rough wall's one ray may have been reflected.
         let passes = surface.is_thin && ray.direction.dot(arrival.normal) < 0.0;
         let crosses = passes || ray.within.matter(&self.order) != arrival.before.matter(&self.order);
-        if surface.clear < 1.0 && enters && crosses {
-            outcome.radiance += ray.throughput * self.bodies.sent_in_part(arrival.place, arrival.normal, point);
-            ray.throughput *= surface.clear;
+        if surface.painted.clear < 1.0 && enters && crosses {
+            let sent = self.bodies.sent_in_part((arrival.place, surface.painted), arrival.normal, point);
+            outcome.radiance += ray.throughput * sent;
+            ray.throughput *= surface.painted.clear;
         }
         ray
     }
@@ -320,14 +333,19 @@ impl Surroundings<'_> {
     fn arrive(&self, ray: &Ray, hit: Hit, way: Way, throughput: DVec3) -> Option<Arrival> {
         let Ray { origin, direction, within: before, .. } = *ray;
         let point = origin + hit.distance * direction;
-        let surface = self.surfaces[hit.place.body];
+        let mut surface = self.surfaces[hit.place.body];
         let (side, behind) = match way {
             Way::In if surface.is_thin => (1.0, before),
             Way::In => (1.0, before.with(hit.place.body)?),
             Way::Out => (-1.0, before.without(hit.place.body)),
         };
         let normal = side * hit.normal;
+        let paint = self.bodies.paint(hit.place);
+        if let Some(paint) = paint {
+            surface.painted = paint.at(hit.place, point);
+        }
         let (point, given) = self.bodies.curved(&hit, point, direction);
+        let given = paint.map_or(given, |paint| paint.bent(hit.place, point, given));
         let given = side * given;
         let shading = if given.dot(direction) < 0.0 { given } else { normal };
         let enters = matches!(way, Way::In);
@@ -361,8 +379,8 @@ impl Arrival {
     /// Returns the reflectance of a thin wall, between whose two interfaces light goes back and forth, and the transmitted
     /// ray.
     fn split_thin(&self, Optics { index, base_color, .. }: Optics) -> (f64, Option<Ray>) {
-        let reflectance = pane(-self.normal.dot(self.direction), index);
-        let throughput = self.throughput * base_color * (1.0 - reflectance);
+        let reflectance = pane(-self.shading.dot(self.direction), index);
+        let throughput = self.throughput * base_color * self.surface.color() * (1.0 - reflectance);
         (reflectance, Some(self.leave(self.direction, self.before, throughput)))
     }
 
@@ -380,14 +398,20 @@ impl Arrival {
         if let Some(body) = from
             && before.color(body)
         {
-            color *= optics[body].base_color;
+            color *= self.color(body, optics);
         }
         if let Some(body) = to
             && behind.color(body)
         {
-            color *= optics[body].base_color;
+            color *= self.color(body, optics);
         }
         (Some(index(to) / index(from)), self.leave(self.direction, behind, self.throughput * color))
+    }
+
+    /// Returns the colour that light takes from a body at this surface: with its images, if the surface is the body's own.
+    fn color(&self, body: usize, optics: &[Optics]) -> DVec3 {
+        let painted = if body == self.place.body { self.surface.color() } else { DVec3::ONE };
+        painted * optics[body].base_color
     }
 
     /// Returns the one ray that leaves a rough surface, at random.
@@ -415,7 +439,7 @@ impl Arrival {
         let passes = random.random::<f64>() >= pane(-facet.dot(self.direction), index);
         let reflected = reflect(self.direction, facet);
         let direction = if passes { reflect(reflected, self.normal) } else { reflected };
-        let color = if passes { base_color } else { DVec3::ONE };
+        let color = if passes { base_color * self.surface.color() } else { DVec3::ONE };
         self.leave(self.on_side(direction, passes), self.before, self.throughput * color)
     }
 

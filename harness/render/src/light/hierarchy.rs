@@ -1,11 +1,12 @@
 //! All bodies of a scene in one hierarchy of triangles, as the recipe `gem_scene` reads them.
 
 use super::environment::{LEAST_DIFFERENCE, largest_radiance};
+use super::paint::{self, Paint};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
-use glam::{UVec4, Vec3, Vec4};
+use glam::{UVec4, Vec2, Vec3, Vec4};
 use lapidary_plan::{Effect, Outside, thickness};
 use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, precedence};
 use std::cell::OnceCell;
@@ -33,6 +34,8 @@ pub(crate) struct Hierarchy {
     normals: (Vec<Vec4>, OnceCell<Buffer>),
     bodies: Buffer,
     start: Buffer,
+    /// Images and colours of vertices, and their textures once a pipeline reads them.
+    paint: (Paint, OnceCell<[(u32, Bound); 2]>),
     /// The bodies' materials, by number.
     materials: Vec<Material>,
     /// Numbers of each object's triangles, in the order of the leaves.
@@ -48,7 +51,7 @@ impl Hierarchy {
     /// If they are beyond the limits that every device offers.
     pub(crate) fn new(builder: &mut Builder<'_>, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         let alone = settings.without.has(Effect::Around) || settings.gem.outside == Some(Outside::Environment);
-        let Bodies { mut bodies, positions, normals, indices } = Bodies::of(scene, alone);
+        let Bodies { mut bodies, positions, normals, uvs, colors, indices } = Bodies::of(scene, alone);
         // Where bodies share space, the one of the lower number is there.
         let places = precedence(&scene.objects);
         bodies.sort_by_key(|body| (!body.material.is_clear(), Reverse((places[body.object], body.triangles.start))));
@@ -70,6 +73,17 @@ impl Hierarchy {
             triangles[bodies[body as usize].object].push(number);
         }
         let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize].extend(0.0)).collect();
+        let mut paint = Paint::new(settings.footprint_of(&scene.camera));
+        if !uvs.is_empty() || !colors.is_empty() {
+            let of_bodies =
+                bodies.iter().map(|body| paint.body(&body.material)).collect::<Result<Vec<u32>, RenderError>>()?;
+            for (corner, index) in corners.iter().zip(&bvh.indices) {
+                let vertex = *index as usize;
+                let uv = uvs.get(vertex).copied().unwrap_or_default();
+                let color = colors.get(vertex).copied().unwrap_or(Vec3::ONE);
+                paint.corner(of_bodies[corner.w as usize], uv, color);
+            }
+        }
         RenderError::unless_bound(size_of_val(&corners[..]) as u64, || "the scene's triangles".to_owned())?;
         let start = Record::new("SceneStart")
             .with("within", within)
@@ -87,11 +101,19 @@ impl Hierarchy {
         let normals = (normals, OnceCell::new());
         let levels = u64::from((bvh.order.len().max(1)).ilog2()) + 1;
         let materials = bodies.into_iter().map(|body| body.material).collect();
-        Ok(Self { nodes, corners, normals, bodies: of_bodies, start, materials, triangles, steps: 16 * levels })
+        let paint = (paint, OnceCell::new());
+        Ok(Self { nodes, corners, normals, bodies: of_bodies, start, paint, materials, triangles, steps: 16 * levels })
     }
 
     /// Returns the resources that `pipeline` reads.
-    pub(crate) fn shared(&self, builder: &mut Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
+    ///
+    /// # Errors
+    /// If they are beyond the limits that every device offers.
+    pub(crate) fn shared(
+        &self,
+        builder: &mut Builder<'_>,
+        pipeline: PipelineId,
+    ) -> Result<Vec<(u32, Bound)>, RenderError> {
         let (contents, made) = &self.normals;
         let mut buffers = vec![(FIRST, self.nodes), (FIRST + 1, self.corners)];
         if builder.binds(pipeline, 0, FIRST + 2) {
@@ -101,7 +123,20 @@ impl Hierarchy {
         }
         buffers.extend([(FIRST + 3, self.bodies), (FIRST + 4, self.start)]);
         buffers.retain(|(binding, _)| builder.binds(pipeline, 0, *binding));
-        buffers.into_iter().map(|(binding, buffer)| (binding, buffer.into())).collect()
+        let mut shared: Vec<(u32, Bound)> =
+            buffers.into_iter().map(|(binding, buffer)| (binding, buffer.into())).collect();
+        if paint::BINDINGS.iter().any(|binding| builder.binds(pipeline, 0, *binding)) {
+            let (paint, made) = &self.paint;
+            let textures = match made.get() {
+                Some(known) => *known,
+                None => *made.get_or_init({
+                    let new = paint.bound(builder)?;
+                    move || new
+                }),
+            };
+            shared.extend(textures.into_iter().filter(|(binding, _)| builder.binds(pipeline, 0, *binding)));
+        }
+        Ok(shared)
     }
 
     /// Whether `pipeline` reads any of them.
@@ -127,6 +162,10 @@ struct Bodies {
     positions: Vec<Vec3>,
     /// One for each position; 0 where the surface is flat.
     normals: Vec<Vec3>,
+    /// One for each position, or none at all if no body has images.
+    uvs: Vec<Vec2>,
+    /// One for each position, or none at all if no mesh has colours.
+    colors: Vec<Vec3>,
     indices: Vec<u32>,
 }
 
@@ -142,6 +181,16 @@ impl Bodies {
             all.positions.extend(&object.mesh.positions);
             let normals = object.mesh.normals.iter().copied().filter(|_| !is_flat);
             all.normals.extend(normals.chain(std::iter::repeat(Vec3::ZERO)).take(object.mesh.positions.len()));
+            let vertices = all.positions.len();
+            if object.material.textures().next().is_some() && !object.mesh.uvs.is_empty() {
+                all.uvs.resize(offset as usize, Vec2::ZERO);
+                all.uvs.extend(&object.mesh.uvs);
+            }
+            if !object.mesh.colors.is_empty() {
+                all.colors.resize(offset as usize, Vec3::ONE);
+                all.colors.extend(&object.mesh.colors);
+            }
+            debug_assert!(all.uvs.len() <= vertices && all.colors.len() <= vertices);
             all.indices.extend(object.mesh.indices.iter().map(|index| offset + index));
             all.add(number, object, first);
         }

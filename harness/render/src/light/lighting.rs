@@ -89,8 +89,7 @@ impl<'a> Lighting<'a> {
     fn glints(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.glints.get_or_init(|| {
             let scene = self.scene;
-            let rows = (self.settings.height * self.settings.samples) as f32;
-            let footprint = 2.0 * (0.5 * scene.camera.vertical_fov).tan() / rows;
+            let footprint = self.settings.footprint_of(&scene.camera);
             let radii = (0..scene.lights.len().max(1)).map(|number| scene.light_radius(number));
             let words: Vec<f32> = std::iter::once(footprint).chain(radii).collect();
             builder.of_object("", |builder| builder.storage("glints", bytemuck::cast_slice(&words)))
@@ -170,7 +169,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 18 of group 0; 4, 5
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 20 of group 0; 4, 5
     /// and 10 are shadow maps, 6 is the view of the screen.
     pub(crate) fn shared(
         &self,
@@ -202,7 +201,7 @@ impl<'a> Lighting<'a> {
             shared.extend(beside::BINDINGS.into_iter().zip([nodes.into(), corners.into()]));
         }
         if Hierarchy::is_read(builder, pipeline) {
-            shared.extend(self.hierarchy(builder)?.shared(builder, pipeline));
+            shared.extend(self.hierarchy(builder)?.shared(builder, pipeline)?);
         }
         Ok(shared)
     }

@@ -5,4 +5,5 @@ pub(crate) mod environment;
 pub(crate) mod from_bodies;
 pub(crate) mod hierarchy;
 pub(crate) mod lighting;
+pub(crate) mod paint;
 pub(crate) mod screen;

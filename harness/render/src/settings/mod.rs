@@ -5,7 +5,7 @@ mod surface;
 use lapidary_plan::{Effects, Outside, Quality, Request, Rung, Scattering};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
-use lapidary_scene::{Environment, SAMPLES};
+use lapidary_scene::{Camera, Environment, SAMPLES};
 pub use surface::{Curvature, DiffuseOptions, ShadowForm};
 
 /// Largest number of samples along each side of a pixel.
@@ -184,6 +184,12 @@ impl Default for WalkOptions {
 }
 
 impl Settings {
+    /// Returns the angle between the rays of neighbouring samples, in radians.
+    pub(crate) fn footprint_of(&self, camera: &Camera) -> f32 {
+        let rows = (self.height * self.samples) as f32;
+        2.0 * (0.5 * camera.vertical_fov).tan() / rows
+    }
+
     /// Returns settings for the paper's rung in the studio, at this size in pixels.
     pub fn of_size(width: u32, height: u32) -> Self {
         Self {

@@ -6,5 +6,5 @@ mod lit;
 mod reflectance;
 pub(crate) mod scattering_law;
 pub mod texture_diffusion;
-mod textures;
+pub(crate) mod textures;
 pub(crate) mod translucent;

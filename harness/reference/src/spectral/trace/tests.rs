@@ -5,7 +5,13 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};
 use lapidary_scene::{Averaging, Material, Object};
 
-const POLISHED: Surface = Surface { is_thin: false, alpha: 0.0, clear: 1.0 };
+const POLISHED: Surface = Surface {
+    is_thin: false,
+    is_opaque: false,
+    alpha: 0.0,
+    painted: Painted { color: DVec3::ONE, clear: 1.0 },
+    is_partly_clear: false,
+};
 
 /// Returns a sky of radiance 1 above and 0 below, with a soft step of one texel in between.
 fn sky() -> Environment {

@@ -53,6 +53,17 @@ pub(super) fn of_image(texels: &Texels, encoding: Encoding) -> (u32, Vec<u8>) {
     (count, bytes)
 }
 
+/// Returns the levels of an image of linear texels, down to a single one.
+pub(super) fn of_linear(size: [u32; 2], texels: Vec<Vec4>) -> Vec<Vec<Vec4>> {
+    let mut levels = vec![texels];
+    for level in 1..count(size) {
+        let before = &levels[level as usize - 1];
+        let next = halved(level_size(size, level - 1), |place| before[place]);
+        levels.push(next);
+    }
+    levels
+}
+
 /// Returns the number of levels down to a single texel.
 fn count(size: [u32; 2]) -> u32 {
     size.into_iter().max().unwrap_or(1).max(1).ilog2() + 1

@@ -4,8 +4,8 @@ mod levels;
 mod normals;
 
 use crate::frame::record::Record;
-use crate::frame::{Bound, Builder, PipelineId};
-use glam::Vec3;
+use crate::frame::{Bound, Builder, PipelineId, level_size};
+use glam::{Vec3, Vec4};
 use lapidary_scene::{Encoding, Material, Mesh, Texture, TextureTransform, Wrap};
 use normals::{Normals, texel_length};
 
@@ -61,6 +61,31 @@ pub(crate) fn bound(
         bound.extend([(NORMAL[0], image), (NORMAL[1], sampler.into())]);
     }
     bound
+}
+
+/// Longest side in texels of an image that rays look up; of a larger one they see a smaller level.
+const LARGEST_MET: u32 = 2048;
+
+/// Returns the size of an image, and its levels: linear RGBA, or, of normals whose slopes have a `scale`, their x and y.
+pub(crate) fn levels_of(texture: &Texture, scale: Option<f32>) -> ([u32; 2], Vec<Vec<Vec4>>) {
+    let texels = &texture.texels;
+    let (mut size, first) = match scale {
+        Some(scale) => {
+            let (size, slopes) = Normals::of(texture, scale).slopes();
+            (size, slopes.into_iter().map(|slopes| slopes.extend(0.0).extend(0.0)).collect())
+        }
+        None => {
+            let decoded = texels.bytes().chunks_exact(4);
+            let decoded = decoded.map(|texel| texture.encoding.decoded([texel[0], texel[1], texel[2], texel[3]]));
+            ([texels.width(), texels.height()], decoded.collect::<Vec<Vec4>>())
+        }
+    };
+    let mut levels = levels::of_linear(size, first);
+    while size[0].max(size[1]) > LARGEST_MET {
+        size = level_size(size, 1);
+        levels.remove(0);
+    }
+    (size, levels)
 }
 
 fn address(wrap: Wrap) -> wgpu::AddressMode {

@@ -35,6 +35,11 @@ impl Normals {
         Self { size, normals, step }
     }
 
+    /// Returns the size of the image, and each normal's x and y.
+    pub(super) fn slopes(&self) -> ([u32; 2], Vec<Vec2>) {
+        (self.size, self.normals.iter().map(|normal| normal.xy()).collect())
+    }
+
     /// Returns the normals as they are, and blurred with a Gaussian of each of these widths in texels of the image.
     pub(super) fn layers(&self, wrap: [Wrap; 2], widths: Vec3) -> Layers {
         let blurred = widths.to_array().map(|width| self.blurred(wrap, width / self.step as f32));
