@@ -125,12 +125,12 @@ pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2])
     overlapping(object, scene, size, true)
 }
 
-/// Returns the first body that is seen undistorted through a clear one, between two parallel faces: one that is not clear,
-/// and overlaps it in a picture of this size.
+/// Returns the first body that is seen undistorted through a clear one, between two parallel faces or through a thin wall: one
+/// that is not clear, and overlaps it in a picture of this size.
 fn seen_straight<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {
     static FOUND: Remembered<bool> = Remembered::new();
     let other = overlapping(object, scene, size, false)?;
-    FOUND.of(object.shape(), has_parallel_faces).then_some(other)
+    (object.material.is_thin_wall() || FOUND.of(object.shape(), has_parallel_faces)).then_some(other)
 }
 
 /// Whether two opposite directions each face a share of a mesh's area.
@@ -162,7 +162,8 @@ fn overlapping<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2], clear: 
 /// Returns why bodies that are not clear are seen in or through a clear one by their triangles; `None` if their bounds will do.
 pub(crate) fn beside(object: &Object, scene: &Scene, size: [u32; 2]) -> Option<String> {
     if let Some(other) = seen_straight(object, scene, size) {
-        return Some(format!("{} is seen straight through its parallel faces", other.name));
+        let way = if object.material.is_thin_wall() { "it" } else { "its parallel faces" };
+        return Some(format!("{} is seen straight through {way}", other.name));
     }
     stands_in(object, scene).map(|around| format!("it stands within the bounds of {}", around.name))
 }

@@ -85,13 +85,13 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
-    if request.quality == Quality::Fast || !has(Effect::Around) || !inside {
+    if request.quality == Quality::Fast || !has(Effect::Around) {
         return None;
     }
     let reason = among::beside(object, scene, request.size)?;
     // What leaves a convex body is looked for by the effect `around` alone, to which others cover all that is behind them.
     let is_sheer = || scene.objects.iter().any(among::is_sheer);
-    let walks = object.copies.is_none() && !is_sheer() && Shape::of(object.shape()) == Shape::Convex;
+    let walks = inside && object.copies.is_none() && !is_sheer() && Shape::of(object.shape()) == Shape::Convex;
     (!walks).then_some(reason)
 }
 

@@ -155,6 +155,7 @@ impl Case<'_> {
             Effect::EnvironmentMap => self.environment_map(),
             Effect::BaseColorTexture => self.image(TextureSlot::BaseColor),
             Effect::NormalTexture => self.image(TextureSlot::Normal),
+            Effect::ThicknessTexture if self.is_gem() => off("light goes through the mesh itself"),
             Effect::ThicknessTexture => self.on_light_that_spreads(self.image(TextureSlot::Thickness)),
             Effect::PartialTransmission => self.partial_transmission(),
             Effect::TransmissionTexture => self.transmission_texture(),

@@ -130,7 +130,7 @@ impl Case<'_> {
         let slots = [
             (TextureSlot::BaseColor, draws),
             (TextureSlot::Normal, draws),
-            (TextureSlot::Thickness, spreads),
+            (TextureSlot::Thickness, spreads || material.is_clear()),
             (TextureSlot::Transmission, is_followed),
             (TextureSlot::DiffuseTransmission, spreads || !material.scatters()),
         ];

@@ -10,8 +10,8 @@
 //! colours, node transforms and instances (`gltf/instances.rs`), the first perspective camera,
 //! directional, point and spot lights (`gltf/light_node.rs`), materials (`gltf/material.rs`) and some
 //! of their textures (`gltf/texture.rs`). Anything else in the file is listed in [`Scene::lacking`]
-//! (`gltf/survey.rs`): other textures, skins, morph targets, animations and more, and with it what is
-//! loaded but not drawn yet (`gltf/not_drawn.rs`). Bodies are shown at rest.
+//! (`gltf/survey.rs`): other textures, skins, morph targets, animations and more. Bodies are shown at
+//! rest.
 
 use std::path::Path;
 
@@ -39,7 +39,6 @@ mod limits;
 mod material;
 mod medium;
 mod nodes;
-mod not_drawn;
 mod primitive;
 mod requirement;
 mod sources;

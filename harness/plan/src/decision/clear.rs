@@ -295,7 +295,7 @@ impl Case<'_> {
         match self.first_met(|object| among::shows(object, slot)) {
             Some(object) if self.is_among() => on(format!("{} of {}", slot.name(), object.name)),
             Some(_) => off(format!("the rung {} draws factors alone", self.rung)),
-            None => off(format!("no {} with texture coordinates and a factor above 0", slot.name())),
+            None => off(format!("no {}", slot.name())),
         }
     }
 

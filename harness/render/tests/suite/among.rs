@@ -11,6 +11,7 @@ use lapidary_scene::{Camera, Environment, Light, Material, Mesh, Object, Scene};
 use lapidary_testing::gpu;
 use std::f64::consts::PI;
 
+mod images;
 mod rough;
 
 const SIDE: u32 = 48;

@@ -16,7 +16,7 @@ use super::limits::KNOWN_EXTENSIONS;
 use super::material::{Known, Materials, extensions};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
-use super::{extras, instances, light_node, not_drawn};
+use super::{extras, instances, light_node};
 use crate::{Material, TextureSlot};
 
 /// Lists all unsupported features of the file. Its references are known to be valid.
@@ -132,10 +132,6 @@ fn textures(json: &JsonMaterial, known: &Known, user: User<'_>, lacking: &mut La
     }
     for (what, instead) in &known.lacking {
         lacking.note(TEXTURES, what.clone(), instead, user);
-    }
-    let loaded = known.textured.iter().flat_map(Material::textures).map(|(slot, _)| slot);
-    for slot in loaded.filter(|slot| not_drawn::TEXTURES.contains(slot)) {
-        lacking.note(TEXTURES, quoted(slot.name()), FACTOR, user);
     }
 }
 
