@@ -29,6 +29,9 @@ override EFFECT_PARTIAL_TRANSMISSION: bool = false;
 // Opaque bodies cover a share of what is behind them. Called for by an alphaMode of MASK or BLEND of one of
 // them.
 override EFFECT_COVERAGE: bool = false;
+// Light that scatters in a body spreads over its curved surface. Called for by KHR_materials_diffuse_transmission, or
+// extras.lapidary, of a body that is not clear.
+override EFFECT_CDRF: bool = false;
 // Light is absorbed on its way through bodies. Called for by KHR_materials_volume with an attenuation
 // colour below white.
 override EFFECT_ABSORPTION: bool = false;
@@ -78,6 +81,9 @@ struct SceneBody {
     // Share of the light that comes from outside, and is not reflected, that enters; of an opaque body, the
     // share that it does not cover.
     clear: f32,
+    // Of a body in which light scatters, the transport mean free path and the root of 1 - albedo, per channel.
+    free_path: vec3f,
+    gamma: vec3f,
 }
 
 struct SceneStart {
@@ -101,7 +107,7 @@ struct SceneWavelength {
 // Three per triangle, counter-clockwise from outside, in the order of the leaves. w is the number of
 // the body.
 @group(0) @binding(12) var<storage, read> corners: array<vec4f>;
-// Normals at these corners; 0 where the triangle is flat.
+// Normals at these corners; 0 where the triangle is flat. w is the mean curvature of a body in which light scatters.
 @group(0) @binding(13) var<storage, read> corner_normals: array<vec4f>;
 @group(0) @binding(14) var<storage, read> scene_bodies: array<SceneBody>;
 @group(0) @binding(15) var<uniform> scene_start: SceneStart;
@@ -314,6 +320,43 @@ fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
     return 0.318309886f * base_color * irradiance;
 }
 
+//+cdrf {
+// Irradiance of one channel by its cosine with the light, after the drift of light that scatters.
+fn scene_drifted(cosine: f32, drift: CdrfDrift) -> f32 {
+    return drift.share * cdrf_cheap(cdrf_shifted(cosine, drift.shift), drift.sigma);
+}
+
+// Radiance that a body sends in which light scatters, by the curvature of its surface, without shadows.
+fn scene_spread(body: SceneBody, base_color: vec3f, position: vec3f, normal: vec3f, curvature: f32) -> vec3f {
+    let red = cdrf_drift(body.free_path.x, curvature, body.gamma.x);
+    let green = cdrf_drift(body.free_path.y, curvature, body.gamma.y);
+    let blue = cdrf_drift(body.free_path.z, curvature, body.gamma.z);
+    var irradiance = vec3f(0.0f);
+    if (EFFECT_ENVIRONMENT) {
+        irradiance = harmonics_irradiance(
+            harmonics_around(normal),
+            cdrf_harmonic_weights(red.sigma),
+            cdrf_harmonic_weights(green.sigma),
+            cdrf_harmonic_weights(blue.sigma),
+        );
+    }
+    for (var number = 0u; number < arrayLength(&lights); number++) {
+        let arrival = light_arrival(lights[number], position);
+        let cosine = dot(arrival.direction, normal);
+        let received = vec3f(scene_drifted(cosine, red), scene_drifted(cosine, green), scene_drifted(cosine, blue));
+        irradiance += received * arrival.irradiance;
+    }
+    return 0.318309886f * base_color * irradiance;
+}
+
+// The mean curvature at a place on a triangle.
+fn scene_curvature(triangle: u32, barycentrics: vec2f) -> f32 {
+    return (1.0f - barycentrics.x - barycentrics.y) * corner_normals[3u * triangle].w
+        + barycentrics.x * corner_normals[3u * triangle + 1u].w
+        + barycentrics.y * corner_normals[3u * triangle + 2u].w;
+}
+//+cdrf }
+
 // Random numbers, four for each call.
 fn scene_random() -> vec4f {
     scene_counter.z++;
@@ -510,7 +553,15 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         // Its back is not there.
         if (body.kind == SCENE_OPAQUE && enters) {
             let normal = scene_matte_normal(hit, place, outward);
-            let sent = scene_sent(painted * body.base_color, ray.position, normal);
+            var sent = scene_sent(painted * body.base_color, ray.position, normal);
+            if (EFFECT_CDRF) {
+                //+cdrf {
+                if (any(body.free_path > vec3f(0.0f))) {
+                    let curvature = scene_curvature(hit.triangle, hit.barycentrics);
+                    sent = scene_spread(body, painted * body.base_color, ray.position, normal, curvature);
+                }
+                //+cdrf }
+            }
             var covered = ray.throughput;
             if (EFFECT_COVERAGE) {
                 covered = (1.0f - clear) * ray.throughput;

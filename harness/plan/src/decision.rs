@@ -171,6 +171,7 @@ impl Case<'_> {
     fn cdrf(&self) -> Answer {
         let Rung::Diffuse(reflectance) = self.rung else {
             return match self.rung {
+                _ if self.is_gem() => self.spread_met(),
                 Rung::OpticalPath(_) | Rung::Diffusion(_) => off("light is followed through the body instead"),
                 _ => off("nothing inside scatters"),
             };

@@ -6,18 +6,18 @@ use crate::picture::{Picture, Tile, WalkedPicture};
 use crate::settings::Settings;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Effect;
-use lapidary_reference::random_walk::mesh::{self, Rendering as Walked};
-use lapidary_reference::spectral::{self, Lost, Rendering, Window};
+use lapidary_reference::random_walk::mesh::{self, Lone, Rendering as Walked};
+use lapidary_reference::spectral::{self, Lost, Rendering, Scatterer, Window};
 use lapidary_scene::{Material, Object, Scene};
 use std::sync::Mutex;
 
-/// Returns whether any body of `scene` scatters light.
+/// Returns whether all bodies of `scene` scatter light, and there are any: then the reference is made of random walks alone.
 pub fn scatters(scene: &Scene) -> bool {
-    scene.objects.iter().any(|object| object.material.scatters())
+    !scene.objects.is_empty() && scene.objects.iter().all(|object| object.material.scatters())
 }
 
-/// Fills `picture` with the reference of `scene`: random walks if any body scatters light, otherwise spectral
-/// rays.
+/// Fills `picture` with the reference of `scene`: random walks, whose errors are estimated, if all bodies scatter light, otherwise
+/// spectral rays, and a walk where one meets a body that scatters.
 pub(crate) fn fill(
     gpu: &Gpu,
     scene: &Scene,
@@ -89,6 +89,10 @@ fn follow(
     if let Some(opaque) = scene.objects.iter().find(polished) {
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }
+    let environment = (!settings.without.has(Effect::Environment)).then_some(&settings.environment);
+    let lone = Lone::all(scene, settings.walks.boundary, environment)?;
+    let scatterers: Vec<Option<&dyn Scatterer>> =
+        lone.iter().map(|lone| lone.as_ref().map(|lone| lone as &dyn Scatterer)).collect();
     let (width, height) = (settings.width, settings.height);
     let rows: u64 = Tile::all(width, height, settings.samples).map(|tile| u64::from(tile.height)).sum();
     let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
@@ -102,6 +106,7 @@ fn follow(
             energy_bound: settings.reference.energy_bound,
             environment: &settings.environment,
             lights: !settings.without.has(Effect::Light),
+            scatterers: &scatterers,
             lit_by_environment: !settings.without.has(Effect::Environment),
             ..spectral::Settings::of_size(settings.width, settings.height)
         };

@@ -290,6 +290,14 @@ impl Case<'_> {
         self.first(|object| (object.material.is_clear() || meets_opaque) && wanted(object))
     }
 
+    /// Answers for a body in which light scatters, and which light through this one meets.
+    pub(super) fn spread_met(&self) -> Answer {
+        match self.first_met(|object| object.material.scatters()) {
+            Some(object) if self.is_among() => on(format!("light scatters in {}", object.name)),
+            _ => off("nothing inside scatters"),
+        }
+    }
+
     /// Answers for an image of this body, or of any that its light meets.
     pub(super) fn image_met(&self, slot: TextureSlot) -> Answer {
         match self.first_met(|object| among::shows(object, slot)) {

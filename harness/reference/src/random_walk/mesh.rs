@@ -15,11 +15,13 @@
 mod boundary;
 mod estimate;
 mod from_lights;
+mod lone;
 mod pass;
 mod walk;
 
 pub use boundary::Boundary;
 pub use estimate::Rendering;
+pub use lone::Lone;
 pub use pass::Origin;
 
 use crate::generator::generator;

@@ -21,7 +21,8 @@
 //! the shared normals, interpolated between a triangle's corners. So stones show opaque bodies, but
 //! neither shade them nor throw light on them. What such a surface itself reflects is left out: the
 //! highlights of lights on a rough one, and the mirror image in a polished one, which
-//! `lapidary-render` refuses. Bodies that scatter light are taken as clear.
+//! `lapidary-render` refuses. Bodies that scatter light send what [`Scatterer`]s say, which are lit as if nothing else were
+//! there.
 
 mod bvh;
 mod cells;
@@ -31,10 +32,12 @@ pub(crate) mod hit;
 mod matte;
 mod paint;
 mod rough;
+mod scatterer;
 mod trace;
 mod within;
 
 pub use geometry::Geometry;
+pub use scatterer::Scatterer;
 
 use crate::generator::generator;
 use geometry::Bodies;
@@ -56,7 +59,7 @@ pub const WAVELENGTHS: usize = 31;
 pub const ENERGY_BOUND: f64 = 1e-4;
 /// Largest number of wavelengths in a spectrum.
 pub const MOST_WAVELENGTHS: usize = 301;
-/// Number of ways that light takes for each sample and wavelength, if any body is rough.
+/// Number of ways that light takes for each sample and wavelength, if any body is rough or scatters.
 const ROUGH_PATHS: u32 = 16;
 /// Seed of these ways.
 const SEED: u64 = 1;
@@ -86,6 +89,8 @@ pub struct Settings<'environment> {
     pub lights: bool,
     /// Representation of bodies for ray intersection.
     pub geometry: Geometry,
+    /// By the scene's bodies, those that scatter light; a body that is not named is matte or clear by its material.
+    pub scatterers: &'environment [Option<&'environment dyn Scatterer>],
 }
 
 impl Settings<'static> {
@@ -104,6 +109,7 @@ impl Settings<'static> {
             lit_by_environment: true,
             lights: false,
             geometry: Geometry::Planes,
+            scatterers: &[],
         }
     }
 }
@@ -337,7 +343,8 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                is_rough: surfaces.iter().any(|surface| surface.alpha > 0.0),
+                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0) || settings.scatterers.iter().any(Option::is_some),
+                scatterers: settings.scatterers,
                 surfaces,
                 environment: settings.environment,
                 energy_bound: settings.energy_bound,
@@ -369,7 +376,7 @@ impl<'scene> Job<'scene> {
             sample.radiance = radiance;
             return sample;
         }
-        let paths = if self.surroundings.is_rough { ROUGH_PATHS } else { 1 };
+        let paths = if self.surroundings.is_random { ROUGH_PATHS } else { 1 };
         let share = f64::from(paths).recip();
         let mut random = generator(SEED, counter);
         for Band { weights, count, optics } in &self.spectrum {

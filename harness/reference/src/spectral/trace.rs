@@ -4,6 +4,7 @@ use super::geometry::{Bodies, Way};
 use super::hit::{Hit, Place};
 use super::paint::Painted;
 use super::rough;
+use super::scatterer::Scatterer;
 use super::within::{Order, Within};
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
@@ -65,8 +66,10 @@ pub(super) struct Surroundings<'scene> {
     /// Lights whose discs are seen, with their radii: of a sun the sine of the angle.
     pub(super) lights: Vec<(Light, f64)>,
     pub(super) surfaces: Vec<Surface>,
-    /// Whether any of them is rough, so that light takes one of several ways there.
-    pub(super) is_rough: bool,
+    /// Whether any of them is rough or scatters, so that light takes one of several ways there.
+    pub(super) is_random: bool,
+    /// By the bodies, those that scatter.
+    pub(super) scatterers: &'scene [Option<&'scene dyn Scatterer>],
     /// The clear bodies around the eye.
     pub(super) around_eye: Within,
     pub(super) environment: &'scene Environment,
@@ -87,7 +90,7 @@ pub(super) struct Outcome {
 pub(super) enum Primary {
     /// The ray meets a polished clear body.
     Clear(Entry),
-    /// The ray meets a rough or partly clear body, or begins within clear ones: it is followed from the eye on.
+    /// The ray meets a rough, partly clear or scattering body, or begins within clear ones: it is followed from the eye on.
     FromEye(Ray),
     /// The ray meets a matte body, which sends this radiance.
     Matte(DVec3),
@@ -104,11 +107,13 @@ pub(super) struct Entry {
 }
 
 /// What a ray meets first.
-enum Ahead {
+enum Ahead<'scene> {
     /// The surface of a clear body.
     Surface(Hit, Way),
     /// A matte body or the environment, with the radiance that it sends and its distance.
     Light(DVec3, f64),
+    /// A body that scatters, and its distance.
+    Scatterer(&'scene dyn Scatterer, f64),
 }
 
 /// A ray that arrives at a surface.
@@ -171,7 +176,7 @@ impl PartialEq for Ray {
 
 impl Eq for Ray {}
 
-impl Surroundings<'_> {
+impl<'scene> Surroundings<'scene> {
     /// Finds the first surface that a camera ray meets, of whatever body; `None` if it meets none.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         if !self.around_eye.is_empty() {
@@ -184,24 +189,32 @@ impl Surroundings<'_> {
         }
         let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
         let surface = self.surfaces[hit.place.body];
-        if surface.alpha > 0.0 || surface.is_partly_clear {
+        if surface.alpha > 0.0 || surface.is_partly_clear || self.scatterer(&hit).is_some() {
             return Some(Primary::FromEye(ray));
         }
         let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
         let reflected = arrival.reflected();
         let reflected_radiance = match self.ahead(&arrival.leave(reflected, arrival.before, DVec3::ONE))? {
-            Ahead::Surface(..) => None,
+            Ahead::Surface(..) | Ahead::Scatterer(..) => None,
             Ahead::Light(radiance, _) => Some(radiance),
         };
         Some(Primary::Clear(Entry { arrival, reflected, reflected_radiance }))
     }
 
+    /// Returns the body at a hit if it scatters.
+    fn scatterer(&self, hit: &Hit) -> Option<&'scene dyn Scatterer> {
+        self.scatterers.get(hit.place.body).copied().flatten()
+    }
+
     /// Finds what a ray meets; `None` if it is within a body whose surface has a gap there.
-    fn ahead(&self, ray: &Ray) -> Option<Ahead> {
+    fn ahead(&self, ray: &Ray) -> Option<Ahead<'scene>> {
         let Some((hit, way)) = self.bodies.cross(ray.origin, ray.direction, ray.left, &ray.within) else {
             let around = || Ahead::Light(self.around(ray), f64::INFINITY);
             return ray.within.is_empty().then(around);
         };
+        if let Some(scatterer) = self.scatterer(&hit) {
+            return Some(Ahead::Scatterer(scatterer, hit.distance));
+        }
         let sent = self.bodies.sent(&hit, ray.origin + hit.distance * ray.direction);
         Some(sent.map_or(Ahead::Surface(hit, way), |radiance| Ahead::Light(radiance, hit.distance)))
     }
@@ -248,7 +261,7 @@ impl Surroundings<'_> {
             && let Some(ray) = strongest.take().or_else(|| waiting.pop())
         {
             pending -= ray.energy();
-            let Some(arrival) = self.travel(&ray, optics, &mut outcome) else { continue };
+            let Some(arrival) = self.travel(&ray, optics, &mut outcome, random) else { continue };
             hits += 1;
             let (reflectance, transmitted) = if arrival.surface.alpha > 0.0 {
                 (0.0, Some(arrival.scatter(&self.order, optics, random)))
@@ -257,7 +270,7 @@ impl Surroundings<'_> {
             };
             // The many rays of a tree would wander between rough surfaces one by one.
             let (reflectance, transmitted) = match transmitted {
-                Some(ray) if self.is_rough && hits > MOST_SPLIT && reflectance > 0.0 => {
+                Some(ray) if self.is_random && hits > MOST_SPLIT && reflectance > 0.0 => {
                     let reflects = random.random::<f64>() < reflectance;
                     let whole = Ray { throughput: ray.throughput / (1.0 - reflectance), ..ray };
                     if reflects { (1.0, None) } else { (0.0, Some(whole)) }
@@ -286,7 +299,13 @@ impl Surroundings<'_> {
     /// body or of the environment ahead is added to `outcome`. A ray within bodies that meets no surface has left the
     /// smooth ones; within others, whose surface has a gap there, it is lost, and so it is if it comes into more bodies than
     /// are followed.
-    fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
+    fn travel(
+        &self,
+        ray: &Ray,
+        optics: &[Optics],
+        outcome: &mut Outcome,
+        random: &mut Xoshiro256PlusPlus,
+    ) -> Option<Arrival> {
         let (mut ray, mut ahead) = (*ray, self.ahead(ray));
         // A ray that started on a curved surface, above the face, may have passed the body's edge: it is outside.
         if ahead.is_none() {
@@ -304,6 +323,13 @@ impl Surroundings<'_> {
         let arrival = match ahead {
             Some(Ahead::Light(radiance, distance)) => {
                 outcome.radiance += through(distance) * radiance;
+                return None;
+            }
+            Some(Ahead::Scatterer(scatterer, distance)) => {
+                match scatterer.sent(ray.origin, ray.direction, random) {
+                    Some(radiance) => outcome.radiance += through(distance) * radiance,
+                    None => outcome.lost += ray.energy(),
+                }
                 return None;
             }
             Some(Ahead::Surface(hit, way)) => self.arrive(&ray, hit, way, through(hit.distance)),

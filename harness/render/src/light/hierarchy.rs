@@ -8,6 +8,7 @@ use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
 use glam::{UVec4, Vec2, Vec3, Vec4};
 use lapidary_plan::{Effect, Outside, thickness};
+use lapidary_scene::curvatures::vertex_curvatures;
 use lapidary_scene::{Bvh, Environment, Material, Mesh, Object, Scene, harmonics, precedence};
 use std::cell::OnceCell;
 use std::cmp::Reverse;
@@ -72,7 +73,7 @@ impl Hierarchy {
             corners.iter_mut().for_each(|corner| corner.w = body as f32);
             triangles[bodies[body as usize].object].push(number);
         }
-        let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize].extend(0.0)).collect();
+        let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize]).collect();
         let mut paint = Paint::new(settings.footprint_of(&scene.camera));
         if !uvs.is_empty() || !colors.is_empty() {
             let of_bodies =
@@ -160,8 +161,8 @@ impl Hierarchy {
 struct Bodies {
     bodies: Vec<Body>,
     positions: Vec<Vec3>,
-    /// One for each position; 0 where the surface is flat.
-    normals: Vec<Vec3>,
+    /// One for each position; 0 where the surface is flat. In w the mean curvature of a body in which light scatters.
+    normals: Vec<Vec4>,
     /// One for each position, or none at all if no body has images.
     uvs: Vec<Vec2>,
     /// One for each position, or none at all if no mesh has colours.
@@ -180,7 +181,12 @@ impl Bodies {
             let is_flat = object.material.is_clear() && !lapidary_plan::is_smooth(object);
             all.positions.extend(&object.mesh.positions);
             let normals = object.mesh.normals.iter().copied().filter(|_| !is_flat);
-            all.normals.extend(normals.chain(std::iter::repeat(Vec3::ZERO)).take(object.mesh.positions.len()));
+            let curvatures =
+                if object.material.scatters() { vertex_curvatures(&object.mesh) } else { Vec::new() };
+            let normals = normals.chain(std::iter::repeat(Vec3::ZERO));
+            let corners = normals.zip(curvatures.into_iter().chain(std::iter::repeat(0.0)));
+            let corners = corners.map(|(normal, curvature)| normal.extend(curvature));
+            all.normals.extend(corners.take(object.mesh.positions.len()));
             let vertices = all.positions.len();
             if object.material.textures().next().is_some() && !object.mesh.uvs.is_empty() {
                 all.uvs.resize(offset as usize, Vec2::ZERO);
@@ -221,7 +227,12 @@ fn record(material: &Material, colors: &[Vec3]) -> Record {
     let color = if material.is_clear() { material.base_color } else { thickness::color(material, colors) };
     let record = Record::new("SceneBody").with("base_color", color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
-    record.with("alpha", material.facet_slope()).with("clear", clear)
+    let record = record.with("alpha", material.facet_slope()).with("clear", clear);
+    let scatters = material.scatters();
+    let free_path = thickness::free_path(material).filter(|_| scatters).unwrap_or_default();
+    // Light that is neither scattered nor absorbed has no mean free path; beyond any body's size, it drifts no farther.
+    let free_path = free_path.map(|length| if length.is_finite() { length } else { 0.0 });
+    record.with("free_path", free_path).with("gamma", thickness::gamma(material))
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.
