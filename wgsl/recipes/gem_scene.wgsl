@@ -3,9 +3,10 @@
 // Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980 (the tree of
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
-// requires: absorption, bvh_trace, cdrf, environment, fresnel, microfacet, proxy_geometry, random_walk, refraction
+// requires: absorption, bvh_trace, cdrf, environment, fresnel, half_space, microfacet, proxy_geometry
+// requires: random_walk, refraction
 // parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank, texture_tangents
-// parts: scene_images
+// parts: scene_images, scattering_law
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
 // set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
@@ -81,9 +82,10 @@ struct SceneBody {
     // Share of the light that comes from outside, and is not reflected, that enters; of an opaque body, the
     // share that it does not cover.
     clear: f32,
-    // Of a body in which light scatters, the transport mean free path and the root of 1 - albedo, per channel.
+    // Transport mean free path of a body in which light scatters, per channel; 0 of others.
     free_path: vec3f,
-    gamma: vec3f,
+    // Its law, without a boundary.
+    law: ScatteringLaw,
 }
 
 struct SceneStart {
@@ -326,11 +328,15 @@ fn scene_drifted(cosine: f32, drift: CdrfDrift) -> f32 {
     return drift.share * cdrf_cheap(cdrf_shifted(cosine, drift.shift), drift.sigma);
 }
 
-// Radiance that a body sends in which light scatters, by the curvature of its surface, without shadows.
-fn scene_spread(body: SceneBody, base_color: vec3f, position: vec3f, normal: vec3f, curvature: f32) -> vec3f {
-    let red = cdrf_drift(body.free_path.x, curvature, body.gamma.x);
-    let green = cdrf_drift(body.free_path.y, curvature, body.gamma.y);
-    let blue = cdrf_drift(body.free_path.z, curvature, body.gamma.z);
+// Radiance that a body sends in a direction in which light scatters, by the curvature of its surface, without shadows
+// and highlights.
+fn scene_spread(
+    body: SceneBody, base_color: vec3f, position: vec3f, normal: vec3f, curvature: f32, cosine_eye: f32
+) -> vec3f {
+    let red = cdrf_drift(body.free_path.x, curvature, body.law.gamma.x);
+    let green = cdrf_drift(body.free_path.y, curvature, body.law.gamma.y);
+    let blue = cdrf_drift(body.free_path.z, curvature, body.law.gamma.z);
+    let sigma = vec3f(red.sigma, green.sigma, blue.sigma);
     var irradiance = vec3f(0.0f);
     if (EFFECT_ENVIRONMENT) {
         irradiance = harmonics_irradiance(
@@ -339,11 +345,19 @@ fn scene_spread(body: SceneBody, base_color: vec3f, position: vec3f, normal: vec
             cdrf_harmonic_weights(green.sigma),
             cdrf_harmonic_weights(blue.sigma),
         );
+        if (EFFECT_HALF_SPACE) {
+            irradiance *= scattering_law_around(cosine_eye, body.law);
+        }
     }
     for (var number = 0u; number < arrayLength(&lights); number++) {
         let arrival = light_arrival(lights[number], position);
         let cosine = dot(arrival.direction, normal);
-        let received = vec3f(scene_drifted(cosine, red), scene_drifted(cosine, green), scene_drifted(cosine, blue));
+        var received = vec3f(scene_drifted(cosine, red), scene_drifted(cosine, green), scene_drifted(cosine, blue));
+        if (EFFECT_HALF_SPACE) {
+            // The cosine at which light has entered that leaves here.
+            let entered = min(sqrt(received * received + sigma * sigma), vec3f(1.0f));
+            received *= scattering_law_of_light(cosine_eye, entered, body.law);
+        }
         irradiance += received * arrival.irradiance;
     }
     return 0.318309886f * base_color * irradiance;
@@ -558,7 +572,8 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
                 //+cdrf {
                 if (any(body.free_path > vec3f(0.0f))) {
                     let curvature = scene_curvature(hit.triangle, hit.barycentrics);
-                    sent = scene_spread(body, painted * body.base_color, ray.position, normal, curvature);
+                    let cosine = max(-dot(ray.direction, normal), -0.5f * dot(ray.direction, outward));
+                    sent = scene_spread(body, painted * body.base_color, ray.position, normal, curvature, cosine);
                 }
                 //+cdrf }
             }

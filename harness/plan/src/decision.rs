@@ -225,6 +225,9 @@ impl Case<'_> {
     }
 
     fn half_space(&self) -> Answer {
+        if self.is_gem() && self.request.quality != Quality::Fast {
+            return self.spread_met();
+        }
         match self.rung {
             Rung::Diffusion(_) => return off("part of diffusion"),
             Rung::Diffuse(_) | Rung::OpticalPath(_) if !self.material.scatters() => {

@@ -143,16 +143,6 @@ pub fn color(material: &Material, colors: &[Vec3]) -> Vec3 {
     of_medium.unwrap_or(material.base_color)
 }
 
-/// Returns the root of 1 - albedo for red, green and blue of a scattering body: of its medium, or of the matter that has its
-/// base colour.
-#[must_use]
-pub fn gamma(material: &Material) -> Vec3 {
-    match albedo(material) {
-        Some(albedo) => albedo.map(|albedo| lapidary_half_space::gamma(albedo, 0.0)),
-        None => material.base_color.map(lapidary_half_space::gamma_of_reflectance),
-    }
-}
-
 /// Returns the transport mean free path for red, green and blue, in units of length: the medium's, or else
 /// that of the matter that has the material's base color and `sigma0`; `None` if it has neither.
 #[must_use]

@@ -6,6 +6,7 @@ use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use crate::settings::Settings;
+use crate::surface::scattering_law::ScatteringLaw;
 use glam::{UVec4, Vec2, Vec3, Vec4};
 use lapidary_plan::{Effect, Outside, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
@@ -232,7 +233,7 @@ fn record(material: &Material, colors: &[Vec3]) -> Record {
     let free_path = thickness::free_path(material).filter(|_| scatters).unwrap_or_default();
     // Light that is neither scattered nor absorbed has no mean free path; beyond any body's size, it drifts no farther.
     let free_path = free_path.map(|length| if length.is_finite() { length } else { 0.0 });
-    record.with("free_path", free_path).with("gamma", thickness::gamma(material))
+    record.with("free_path", free_path).within("law", |record| ScatteringLaw::matched(material).fill(record))
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.

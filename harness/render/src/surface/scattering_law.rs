@@ -34,6 +34,11 @@ impl ScatteringLaw {
         Self::of(material, Self::index_of(material, decisions), decisions.has(Effect::Reflection))
     }
 
+    /// Returns the law of a material without a boundary.
+    pub(crate) fn matched(material: &Material) -> Self {
+        Self::of(material, 1.0, false)
+    }
+
     /// Returns the index at the boundary: 1 if the surface reflects nothing.
     pub(crate) fn index_of(material: &Material, decisions: &Decisions) -> f32 {
         let reflects = decisions.has(Effect::Microfacet) || decisions.has(Effect::Reflection);

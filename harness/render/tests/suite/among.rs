@@ -3,11 +3,12 @@
 use glam::{DQuat, DVec3, Vec3};
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;
+use lapidary_plan::{Effect, Effects};
 use lapidary_render::{Picture, Settings, render};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::normals::Normals;
 use lapidary_scene::surfaces::{rounded_box, sphere, torus};
-use lapidary_scene::{Camera, Environment, Light, Material, Mesh, Object, Scene};
+use lapidary_scene::{Camera, Density, Environment, Light, Material, Medium, Mesh, Object, Scene};
 use lapidary_testing::gpu;
 use std::f64::consts::PI;
 
@@ -78,6 +79,19 @@ fn difference(one: &Picture, other: &Picture, one_in: usize) -> (f64, f64) {
     all.sort_by(f64::total_cmp);
     let square: f64 = all.iter().map(|difference| difference * difference).sum();
     ((square / all.len() as f64).sqrt(), all[all.len() - 1 - all.len() / one_in])
+}
+
+/// Returns the means of blocks of pixels.
+fn blocks(picture: &Picture) -> Vec<DVec3> {
+    const BLOCK: u32 = 8;
+    let all: Vec<DVec3> = colors(picture).collect();
+    let mean = |left: u32, top: u32| {
+        let rows = top..top + BLOCK;
+        let places = rows.flat_map(|y| (left..left + BLOCK).map(move |x| (y * SIDE + x) as usize));
+        places.map(|place| all[place]).sum::<DVec3>() / f64::from(BLOCK * BLOCK)
+    };
+    let starts = || (0..SIDE / BLOCK).map(|number| number * BLOCK);
+    starts().flat_map(|top| starts().map(move |left| mean(left, top))).collect()
 }
 
 /// In a body of index 1 a matte one shows its own colour, and a clear one what it lets through.
@@ -384,5 +398,36 @@ fn mixed_scenes_agree_with_the_reference() {
         let [few, many] =
             ["scene-16", "scene-64"].map(|rung| difference(&drawn(&scene, &settings(rung)), &truth, 20).1);
         assert!(many <= few + 1e-3 && many < 0.01, "seed {seed}: {few} and {many}");
+    }
+}
+
+/// The same with bodies in which light scatters, thicker than twenty mean free paths: through clear bodies they look as right as
+/// without them.
+#[test]
+fn mixed_scenes_with_scattering_bodies_agree_with_the_reference() {
+    let seeds: Vec<u64> = (1..=10).collect();
+    for seed in lapidary_testing::sampled(seeds, 2) {
+        let mut scene = mixed(seed);
+        let mut numbers = Numbers(seed + 100);
+        for object in scene.objects.iter_mut().skip(1).step_by(2) {
+            let albedo = 0.6 + 0.38 * numbers.vector().as_vec3();
+            let (scattering, absorption) = (100.0 * albedo, 100.0 * (1.0 - albedo));
+            let medium = Medium { scattering, absorption, anisotropy: 0.0, density: Density::Uniform };
+            object.material = Material { medium: Some(medium), ..matte(Vec3::ONE) };
+        }
+        // The reference has no shadows.
+        let without = Effects::of(&[Effect::Shadow, Effect::TranslucentShadow, Effect::ColoredShadow]);
+        let settings = |rung| Settings { environment: Environment::Studio, samples: 2, without, half_space: true, ..of_rung(rung) };
+        let error = |scene: &Scene| {
+            let [truth, seen] = ["reference", "scene-64"].map(|rung| blocks(&drawn(scene, &settings(rung))));
+            let squares: f64 = seen.iter().zip(&truth).map(|(a, b)| (*a - *b).length_squared() / 3.0).sum();
+            (squares / truth.len() as f64).sqrt()
+        };
+        let mut bare = scene.clone();
+        bare.objects.retain(|object| !object.material.is_clear());
+        let [seen, alone] = [&scene, &bare].map(error);
+        // A block has 4096 walks, and light in its mean a fifth of its deviation, or less.
+        assert!(seen < 1.25 * alone + 0.003, "seed {seed}: {seen}, without the clear bodies {alone}");
+        assert!(seen < 0.02, "seed {seed}: {seen}");
     }
 }

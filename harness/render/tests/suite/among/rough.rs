@@ -47,19 +47,6 @@ fn a_partly_clear_surface_is_a_mixture() {
     }
 }
 
-/// Returns the means of blocks of pixels.
-fn blocks(picture: &Picture) -> Vec<DVec3> {
-    const BLOCK: u32 = 8;
-    let all: Vec<DVec3> = colors(picture).collect();
-    let mean = |left: u32, top: u32| {
-        let rows = top..top + BLOCK;
-        let places = rows.flat_map(|y| (left..left + BLOCK).map(move |x| (y * SIDE + x) as usize));
-        places.map(|place| all[place]).sum::<DVec3>() / f64::from(BLOCK * BLOCK)
-    };
-    let starts = || (0..SIDE / BLOCK).map(|number| number * BLOCK);
-    starts().flat_map(|top| starts().map(move |left| mean(left, top))).collect()
-}
-
 /// Frosted glass before a matte ball and a sky with a horizon. A block's mean is one of 4096 trees of rays and of 65536 of
 /// the reference's paths, each of at most 1: three standard errors are below 0.024 and 0.006.
 #[test]
