@@ -480,6 +480,27 @@ fn scene_split_rough(
     return split;
 }
 
+// The normal that reflects and refracts: that of the triangle's plane where the other one faces away from the ray.
+fn scene_facing(smooth_normal: vec3f, facing: vec3f, direction: vec3f) -> vec3f {
+    return select(facing, smooth_normal, dot(smooth_normal, direction) < 0.0f);
+}
+
+// The two rays by the triangle's plane where its normal would send them to the wrong side of it.
+fn scene_mended(given: SceneSplit, direction: vec3f, facing: vec3f, relative_index: f32) -> SceneSplit {
+    var split = given;
+    if (dot(split.reflected, facing) <= 0.0f) {
+        split.reflected = refraction_reflect(direction, facing);
+    }
+    if (split.reflectance < 1.0f && dot(split.refracted, facing) >= 0.0f) {
+        let straight = refraction_refract(direction, facing, relative_index);
+        split.refracted = straight.direction;
+        if (straight.total) {
+            split.reflectance = 1.0f;
+        }
+    }
+    return split;
+}
+
 // `facing` is the normal of the triangle's plane on the ray's side, `smooth_normal` the one that
 // reflects and refracts. Where that would send light to the wrong side of the triangle, or faces away,
 // the triangle's plane stands in. What one normal does not reflect, it refracts: no light is lost.
@@ -487,10 +508,11 @@ fn scene_split(
     direction: vec3f, facing: vec3f, smooth_normal: vec3f, relative_index: f32, alpha: f32
 ) -> SceneSplit {
     var normal = facing;
-    if (EFFECT_SMOOTH || EFFECT_NORMAL_TEXTURE) {
-        if (dot(smooth_normal, direction) < 0.0f) {
-            normal = smooth_normal;
-        }
+    if (EFFECT_SMOOTH) {
+        normal = scene_facing(smooth_normal, facing, direction);
+    }
+    if (EFFECT_NORMAL_TEXTURE) {
+        normal = scene_facing(smooth_normal, facing, direction);
     }
     if (EFFECT_ROUGH) {
         if (alpha > 0.0f) {
@@ -503,17 +525,11 @@ fn scene_split(
     if (!refracted.total) {
         split.reflectance = fresnel_dielectric(-dot(direction, normal), relative_index);
     }
-    if (EFFECT_SMOOTH || EFFECT_NORMAL_TEXTURE) {
-        if (dot(split.reflected, facing) <= 0.0f) {
-            split.reflected = refraction_reflect(direction, facing);
-        }
-        if (split.reflectance < 1.0f && dot(split.refracted, facing) >= 0.0f) {
-            let straight = refraction_refract(direction, facing, relative_index);
-            split.refracted = straight.direction;
-            if (straight.total) {
-                split.reflectance = 1.0f;
-            }
-        }
+    if (EFFECT_SMOOTH) {
+        split = scene_mended(split, direction, facing, relative_index);
+    }
+    if (EFFECT_NORMAL_TEXTURE) {
+        split = scene_mended(split, direction, facing, relative_index);
     }
     return split;
 }
@@ -542,10 +558,12 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
     var painted = vec3f(1.0f);
     var clear = body.clear;
     var place = ScenePlace();
-    if (EFFECT_BASE_COLOR_TEXTURE || EFFECT_NORMAL_TEXTURE || EFFECT_TRANSMISSION_TEXTURE || EFFECT_VERTEX_COLOR) {
-        place = scene_place(hit.triangle, hit.barycentrics, length(ray.position - view.eye));
+    let way = length(ray.position - view.eye);
+    if (EFFECT_NORMAL_TEXTURE) {
+        place = scene_place(hit.triangle, hit.barycentrics, way);
     }
     if (EFFECT_BASE_COLOR_TEXTURE) {
+        place = scene_place(hit.triangle, hit.barycentrics, way);
         let color = scene_image_color(place);
         painted *= color.rgb;
         if (EFFECT_COVERAGE) {
@@ -555,11 +573,13 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
         }
     }
     if (EFFECT_TRANSMISSION_TEXTURE) {
+        place = scene_place(hit.triangle, hit.barycentrics, way);
         if (body.kind != SCENE_OPAQUE) {
             clear *= scene_image_transmission(place);
         }
     }
     if (EFFECT_VERTEX_COLOR) {
+        place = scene_place(hit.triangle, hit.barycentrics, way);
         painted *= place.color;
     }
     var passes = true;

@@ -18,6 +18,7 @@ mod drawing;
 mod error;
 pub mod frame;
 mod light;
+mod material;
 mod objects;
 mod picture;
 pub mod pixel;

@@ -343,7 +343,8 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0) || settings.scatterers.iter().any(Option::is_some),
+                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0)
+                    || settings.scatterers.iter().any(Option::is_some),
                 scatterers: settings.scatterers,
                 surfaces,
                 environment: settings.environment,

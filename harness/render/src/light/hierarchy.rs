@@ -5,8 +5,8 @@ use super::paint::{self, Paint};
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
+use crate::material::scattering_law::ScatteringLaw;
 use crate::settings::Settings;
-use crate::surface::scattering_law::ScatteringLaw;
 use glam::{UVec4, Vec2, Vec3, Vec4};
 use lapidary_plan::{Effect, Outside, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
@@ -182,8 +182,7 @@ impl Bodies {
             let is_flat = object.material.is_clear() && !lapidary_plan::is_smooth(object);
             all.positions.extend(&object.mesh.positions);
             let normals = object.mesh.normals.iter().copied().filter(|_| !is_flat);
-            let curvatures =
-                if object.material.scatters() { vertex_curvatures(&object.mesh) } else { Vec::new() };
+            let curvatures = if object.material.scatters() { vertex_curvatures(&object.mesh) } else { Vec::new() };
             let normals = normals.chain(std::iter::repeat(Vec3::ZERO));
             let corners = normals.zip(curvatures.into_iter().chain(std::iter::repeat(0.0)));
             let corners = corners.map(|(normal, curvature)| normal.extend(curvature));

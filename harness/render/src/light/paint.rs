@@ -2,7 +2,7 @@
 
 use crate::error::RenderError;
 use crate::frame::{Bound, Builder, Texture as Bounded, level_size};
-use crate::surface::textures::levels_of;
+use crate::material::textures::levels_of;
 use exr::prelude::f16;
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_scene::{Material, Texture, TextureSlot, Wrap};
@@ -123,12 +123,8 @@ impl Paint {
         let (size, levels) = self.stacked();
         let [numbers, images]: [Bounded; 2] = builder.of_object("", |builder| {
             let size_of_numbers = [ROW as u32, rows as u32, 1];
-            let numbers = builder.mipped(
-                "texture coordinates",
-                wgpu::TextureFormat::Rgba32Float,
-                size_of_numbers,
-                (1, numbers),
-            );
+            let numbers =
+                builder.mipped("texture coordinates", wgpu::TextureFormat::Rgba32Float, size_of_numbers, (1, numbers));
             [numbers, builder.mipped("images of bodies", wgpu::TextureFormat::Rgba16Float, size, levels)]
         });
         let images = Bound::Texture(images, wgpu::TextureViewDimension::D2Array);

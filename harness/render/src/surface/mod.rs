@@ -4,7 +4,5 @@ pub(crate) mod blur;
 pub mod cdrf;
 mod lit;
 mod reflectance;
-pub(crate) mod scattering_law;
 pub mod texture_diffusion;
-pub(crate) mod textures;
 pub(crate) mod translucent;

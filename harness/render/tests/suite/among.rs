@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use lapidary_fresnel::oracle as fresnel;
-use lapidary_refraction::oracle as refraction;
 use lapidary_plan::{Effect, Effects};
+use lapidary_refraction::oracle as refraction;
 use lapidary_render::{Picture, Settings, render};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::normals::Normals;
@@ -417,7 +417,13 @@ fn mixed_scenes_with_scattering_bodies_agree_with_the_reference() {
         }
         // The reference has no shadows.
         let without = Effects::of(&[Effect::Shadow, Effect::TranslucentShadow, Effect::ColoredShadow]);
-        let settings = |rung| Settings { environment: Environment::Studio, samples: 2, without, half_space: true, ..of_rung(rung) };
+        let settings = |rung| Settings {
+            environment: Environment::Studio,
+            samples: 2,
+            without,
+            half_space: true,
+            ..of_rung(rung)
+        };
         let error = |scene: &Scene| {
             let [truth, seen] = ["reference", "scene-64"].map(|rung| blocks(&drawn(scene, &settings(rung))));
             let squares: f64 = seen.iter().zip(&truth).map(|(a, b)| (*a - *b).length_squared() / 3.0).sum();

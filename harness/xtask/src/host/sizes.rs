@@ -104,6 +104,8 @@ pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
         "cdrf",
         Rule::Texture("the material's image"),
     ),
+    (&["scene_paint"], "gem_scene", Rule::Texture("4096 texels a row, rows as needed; rgba32float")),
+    (&["scene_images"], "gem_scene", Rule::Texture("the largest image, a layer for each; rgba16float, all levels")),
     (&["emission", "normal", "reflectance", "depth"], "gem_composite", Rule::Texture("the geometry buffer")),
     (&["radiance", "neighbours"], "gem_resolve", Rule::Texture("the targets of `gem_footprint_fragment`")),
     (&["radiance", "depth"], "screen_copy", Rule::Texture("the picture of the other bodies")),

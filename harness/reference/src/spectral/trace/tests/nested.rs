@@ -124,7 +124,7 @@ fn a_ball_within_a_ball_is_magnified_by_its_index() {
             lights: Vec::new(),
             surfaces: vec![POLISHED; objects.len()],
             is_random: false,
-        scatterers: &[],
+            scatterers: &[],
             around_eye: Within::default(),
             environment: &environment,
             energy_bound: 1e-6,
