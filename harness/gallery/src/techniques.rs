@@ -59,6 +59,7 @@ pub const TECHNIQUES: [Technique; 4] = [
             "ray_footprint",
             "screen_trace",
             "bounds_trace",
+            "curved_triangle",
         ],
         recipes: &["gem_walk", "gem_convex", "gem_bvh", "gem", "gem_composite", "gem_resolve"],
         function: "refraction_refract",
