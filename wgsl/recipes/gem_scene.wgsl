@@ -622,7 +622,7 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
             var normal = facing;
             if (EFFECT_NORMAL_TEXTURE) {
                 let bent = scene_image_normal(place, outward);
-                normal = select(facing, select(-bent, bent, enters), dot(bent, ray.direction) < 0.0f == enters);
+                normal = select(facing, select(-bent, bent, enters), (dot(bent, ray.direction) < 0.0f) == enters);
             }
             if (EFFECT_ROUGH) {
                 if (body.alpha > 0.0f) {
