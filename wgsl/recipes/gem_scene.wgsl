@@ -3,8 +3,8 @@
 // Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980 (the tree of
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
-// requires: absorption, bvh_trace, cdrf, environment, fresnel, half_space, microfacet, proxy_geometry
-// requires: random_walk, refraction
+// requires: absorption, bvh_trace, cdrf, curved_triangle, environment, fresnel, half_space, microfacet
+// requires: proxy_geometry, random_walk, refraction
 // parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank, texture_tangents
 // parts: scene_images, scattering_law
 //
@@ -51,9 +51,6 @@ override REST_FROM_ENVIRONMENT: bool = true;
 
 // Number of rays that wait. Of more, the weakest end.
 const SCENE_WAITING = 6u;
-// Cosine of the angle of incidence below which a ray is not followed to the curved surface above a
-// triangle.
-const SCENE_GRAZING = 0.2f;
 // Number of facets of a rough surface after which light leaves as it goes.
 const SCENE_FACETS = 6u;
 // Stands for no body.
@@ -268,44 +265,18 @@ fn scene_matte_normal(hit: BvhTraceHit, place: ScenePlace, flat_normal: vec3f) -
     return normal;
 }
 
-// A place on a curved surface.
-struct SceneCurved {
-    position: vec3f,
-    // Outward unit normal.
-    normal: vec3f,
-}
-
-// Where a ray meets the curved surface that a triangle's normals describe. Its height above the triangle
-// is half the mean distance of the corners' tangent planes, exact for a sphere to the second order; the
-// normal is interpolated there.
-fn scene_curved(hit: BvhTraceHit, position: vec3f, direction: vec3f, outward: vec3f) -> SceneCurved {
-    let a = corners[3u * hit.triangle].xyz;
-    let b = corners[3u * hit.triangle + 1u].xyz;
-    let c = corners[3u * hit.triangle + 2u].xyz;
-    let normal_a = corner_normals[3u * hit.triangle].xyz;
-    let normal_b = corner_normals[3u * hit.triangle + 1u].xyz;
-    let normal_c = corner_normals[3u * hit.triangle + 2u].xyz;
-    let weights = vec3f(1.0f - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
-    let above = vec3f(dot(a - position, normal_a), dot(b - position, normal_b), dot(c - position, normal_c));
-    let upright = vec3f(dot(normal_a, outward), dot(normal_b, outward), dot(normal_c, outward));
-    let most = 0.25f * max(length(b - a), length(c - a));
-    let height = clamp(0.5f * dot(weights, above * upright), -most, most);
-    // A ray that grazes the triangle may meet the surface far away, if at all.
-    let along = dot(direction, outward);
-    let slope = select(min(along, -SCENE_GRAZING), max(along, SCENE_GRAZING), along >= 0.0f);
-    let met = position + height / slope * direction;
-    let foot = met - a;
-    let across = cross(b - a, c - a);
-    let inverse = 1.0f / dot(across, across);
-    let place = inverse * vec2f(dot(cross(foot, c - a), across), dot(cross(b - a, foot), across));
-    // The normals of the corners hold a little beyond the triangle too.
-    let weight = clamp(place, vec2f(-0.5f), vec2f(1.5f));
-    let normal = (1.0f - weight.x - weight.y) * normal_a + weight.x * normal_b + weight.y * normal_c;
-    let squared = dot(normal, normal);
-    if (squared < 1e-6f) {
-        return SceneCurved(position, outward);
-    }
-    return SceneCurved(met, normal * inverseSqrt(squared));
+// Where a ray meets the curved surface that a triangle's normals describe.
+fn scene_curved(hit: BvhTraceHit, position: vec3f, direction: vec3f, outward: vec3f) -> CurvedTriangleHit {
+    let first = 3u * hit.triangle;
+    let triangle = CurvedTriangle(
+        corners[first].xyz,
+        corners[first + 1u].xyz,
+        corners[first + 2u].xyz,
+        corner_normals[first].xyz,
+        corner_normals[first + 1u].xyz,
+        corner_normals[first + 2u].xyz,
+    );
+    return curved_triangle_meet(triangle, hit.barycentrics, position, direction, outward);
 }
 
 // Radiance that an opaque body sends: Lambert's law, without shadows.

@@ -125,6 +125,26 @@ pub(crate) fn overlaps<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2])
     overlapping(object, scene, size, true)
 }
 
+/// Whether any two copies of a clear body overlap in a picture of this size: their boxes do.
+pub(crate) fn copies_overlap(object: &Object, scene: &Scene, size: [u32; 2]) -> bool {
+    let count = object.copies.as_ref().map_or(1, |copies| copies.places.len());
+    let each = object.mesh.positions.len() / count.max(1);
+    if count < 2 || each == 0 {
+        return false;
+    }
+    let matrix = clip_from_world(scene, size[0], size[1]);
+    let copies = object.mesh.positions.chunks_exact(each);
+    let mut places: Vec<(Vec2, Vec2)> =
+        copies.filter_map(|copy| seen(Bounds::of(copy.iter().copied()), matrix)).collect();
+    places.sort_by(|one, other| one.0.x.total_cmp(&other.0.x));
+    let beside = |number: usize| {
+        let (least, most) = places[number];
+        let next = places[number + 1..].iter().take_while(move |other| other.0.x < most.x);
+        next.clone().any(|other| other.0.y < most.y && least.y < other.1.y)
+    };
+    (0..places.len()).any(beside)
+}
+
 /// Returns the first body that is seen undistorted through a clear one, between two parallel faces or through a thin wall: one
 /// that is not clear, and overlaps it in a picture of this size.
 fn seen_straight<'a>(object: &'a Object, scene: &'a Scene, size: [u32; 2]) -> Option<&'a Object> {

@@ -85,6 +85,10 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
+    // A search of all copies for each hit takes many times as long as planes of one.
+    if request.quality == Quality::Best && has(Effect::Behind) && among::copies_overlap(object, scene, request.size) {
+        return Some("in the view its copies overlap".to_owned());
+    }
     if request.quality == Quality::Fast || !has(Effect::Around) {
         return None;
     }

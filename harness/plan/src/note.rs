@@ -154,6 +154,13 @@ pub enum Note {
         /// The rung that draws them.
         rung: Rung,
     },
+    /// Copies of a clear body, seen through one another, under a rung that follows light through one of them.
+    CopiesApart {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+    },
     /// A clear body within more clear ones than a ray knows.
     TooDeep {
         /// The objects concerned.
@@ -237,6 +244,7 @@ impl Note {
             | Self::AllEnters { .. }
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
+            | Self::CopiesApart { .. }
             | Self::OtherColor { .. }
             | Self::NotCompared { .. }
             | Self::TooDeep { .. }
@@ -356,6 +364,11 @@ impl fmt::Display for Note {
             Self::LightsNotSeen { objects, rung } => {
                 write!(f, "{objects}: rung `{rung}` shows no lights on a clear body; add --with light")
             }
+            Self::CopiesApart { objects, rung } => write!(
+                f,
+                "{objects}: rung `{rung}` follows light through one copy, and what leaves it meets no other; `--quality best` follows it through \
+                 all"
+            ),
             Self::NotCompared { count } => write!(
                 f,
                 "{count} bodies: too many to look which of them share space or stand before one another, so each clear one is drawn as if \
@@ -441,6 +454,7 @@ mod tests {
                 "colour, (0.7, 0.5, 0.25), not",
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
+            line_of(Note::CopiesApart { objects: objects(1), rung }, "what leaves it meets no other"),
             line_of(Note::TooDeep { objects: objects(1), within: 6, rung }, "6 clear bodies lie within one another"),
             line_of(Note::NotCompared { count: 900 }, "900 bodies: too many to look which of them share space"),
             line_of(Note::EyeWithin { objects: objects(1), rung }, "object `hare`: the camera stands inside"),

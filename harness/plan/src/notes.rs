@@ -3,6 +3,7 @@
 mod merge;
 mod shared_space;
 
+use crate::among;
 use super::{Decisions, thickness};
 use crate::remembered::Remembered;
 use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
@@ -87,6 +88,9 @@ impl Case<'_> {
         let lit = is_followed && !self.scene.lights.is_empty();
         if lit && !self.shows_lights {
             notes.push(Note::LightsNotSeen { objects: objects.clone(), rung });
+        }
+        if is_followed && !rung.is_among() && among::copies_overlap(self.object, self.scene, self.request.size) {
+            notes.push(Note::CopiesApart { objects: objects.clone(), rung });
         }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {

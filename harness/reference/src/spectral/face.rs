@@ -1,10 +1,8 @@
 //! Triangles with normals at their corners.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use lapidary_curved_triangle::oracle::{self as curved_triangle, CurvedTriangle};
 use lapidary_scene::Mesh;
-
-/// Cosine of the angle of incidence below which a ray is not followed to the curved surface above a face.
-const GRAZING: f64 = 0.2;
 
 /// A triangle.
 pub(super) struct Face {
@@ -32,23 +30,13 @@ impl Face {
     }
 
     /// Returns where a ray that meets the face at `point` meets the curved surface that the normals at the corners
-    /// describe, and the outward unit normal there. Its height above the face is half the mean distance of the corners'
-    /// tangent planes, exact for a sphere to the second order.
+    /// describe, and the outward unit normal there.
     pub(super) fn curved(&self, point: DVec3, direction: DVec3, flat: DVec3) -> (DVec3, DVec3) {
-        let [a, b, c] = self.corners;
-        let above = |corner: usize| (self.corners[corner] - point).dot(self.normals[corner]);
-        let height = |corner: usize| 0.5 * above(corner) * self.normals[corner].dot(flat);
-        let heights = DVec3::new(height(0), height(1), height(2));
-        let most = 0.25 * (b - a).length().max((c - a).length());
-        let height = self.weights(point).dot(heights).clamp(-most, most);
-        let along = direction.dot(flat);
-        // A ray that grazes the face may meet the surface far away, if at all.
-        let slope = if along >= 0.0 { along.max(GRAZING) } else { along.min(-GRAZING) };
-        let met = point + height / slope * direction;
-        // The normals of the corners hold a little beyond the face too.
-        let [_, second, third] = self.weights(met).to_array().map(|weight| weight.clamp(-0.5, 1.5));
-        let normal = self.mean(DVec3::new(1.0 - second - third, second, third));
-        if normal.length_squared() < 1e-6 { (point, flat) } else { (met, normal.normalize()) }
+        let ([a, b, c], [normal_a, normal_b, normal_c]) = (self.corners, self.normals);
+        let triangle = CurvedTriangle { a, b, c, normal_a, normal_b, normal_c };
+        let weights = self.weights(point);
+        let met = curved_triangle::meet(triangle, DVec2::new(weights.y, weights.z), point, direction, flat);
+        (met.position, met.normal)
     }
 
     /// Returns the weights of the corners at a point above or below the face, which add up to 1.
