@@ -3,8 +3,8 @@
 mod merge;
 mod shared_space;
 
-use crate::among;
 use super::{Decisions, thickness};
+use crate::among;
 use crate::remembered::Remembered;
 use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
