@@ -27,15 +27,28 @@ const VIEWS: [(f32, f32); 3] = [(60.0, 12.0), (35.0, -25.0), (78.0, 40.0)];
 /// Samples along each side of a pixel of the reference.
 const REFERENCE_SAMPLES: u32 = 4;
 
-/// The ways, each with the steps over the picture.
-const WAYS: [(Outside, u32); 7] = [
-    (Outside::Environment, SCREEN_STEPS),
-    (Outside::Bodies, SCREEN_STEPS),
-    (Outside::Screen, SCREEN_STEPS),
-    (Outside::Screen, 16),
-    (Outside::Screen, 32),
-    (Outside::Screen, 64),
-    (Outside::Triangles, SCREEN_STEPS),
+/// A way.
+#[derive(Clone, Copy)]
+enum Way {
+    /// By the default rung for a stone alone, with the steps over the picture.
+    Meets(Outside, u32),
+    /// By a rung that follows light through all bodies.
+    Among(&'static str),
+}
+
+/// The ways.
+const WAYS: [Way; 11] = [
+    Way::Meets(Outside::Environment, SCREEN_STEPS),
+    Way::Meets(Outside::Bodies, SCREEN_STEPS),
+    Way::Meets(Outside::Screen, SCREEN_STEPS),
+    Way::Meets(Outside::Screen, 16),
+    Way::Meets(Outside::Screen, 32),
+    Way::Meets(Outside::Screen, 64),
+    Way::Meets(Outside::Triangles, SCREEN_STEPS),
+    Way::Among("scene-8"),
+    Way::Among("scene-8+3"),
+    Way::Among("scene-16+3"),
+    Way::Among("scene-32+3"),
 ];
 
 /// The reference without what stones send to one another.
@@ -49,9 +62,25 @@ pub fn options() -> Options {
     Options { rounds: 7, frame: [512, 384], rungs: Vec::new() }
 }
 
-/// Returns a way's name in the report.
-fn named((outside, steps): (Outside, u32)) -> String {
-    if outside == Outside::Screen { format!("{outside}, {steps} steps") } else { outside.to_string() }
+impl Way {
+    /// Returns the name in the report.
+    fn name(self) -> String {
+        match self {
+            Self::Meets(Outside::Screen, steps) => format!("{}, {steps} steps", Outside::Screen),
+            Self::Meets(outside, _) => outside.to_string(),
+            Self::Among(rung) => format!("all bodies, `{rung}`"),
+        }
+    }
+
+    fn settings(self, usual: &Settings) -> Settings {
+        match self {
+            Self::Meets(outside, screen_steps) => {
+                let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
+                Settings { gem, ..usual.clone() }
+            }
+            Self::Among(rung) => Settings { rung: rung.parse().unwrap_or(Rung::ByMaterial), ..usual.clone() },
+        }
+    }
 }
 
 /// Measures every way in every view, with one sample per pixel.
@@ -76,17 +105,13 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
         for (measure, value) in MEASURES.into_iter().zip(errors(&alone, &reference)) {
             report.rows.push(Row::new(ALONE, &view, measure, value, ""));
         }
-        let settings = |(outside, screen_steps)| {
-            let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
-            Settings { gem, ..usual.clone() }
-        };
-        let timed: Vec<Timed<'_>> = WAYS.iter().map(|way| Timed::new(&scene, settings(*way))).collect();
+        let timed: Vec<Timed<'_>> = WAYS.iter().map(|way| Timed::new(&scene, way.settings(&usual))).collect();
         let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;
         for (way, timing) in WAYS.into_iter().zip(timings) {
-            let picture = kept(render::render_means(gpu, &scene, &settings(way))?, &shows_stone);
+            let picture = kept(render::render_means(gpu, &scene, &way.settings(&usual))?, &shows_stone);
             let ms = timing.map(|timing| timing.ms);
             for (measure, value) in MEASURES.into_iter().zip(errors(&picture, &reference)) {
-                report.rows.push(Row::new(&named(way), &view, measure, value, "").timed(ms));
+                report.rows.push(Row::new(&way.name(), &view, measure, value, "").timed(ms));
             }
         }
     }
@@ -170,7 +195,7 @@ fn table(report: &Report) -> Table {
         let times = views(scene).into_iter().map(|view| report.ms(way, view, MEASURES[0]));
         mean(&times.collect::<Option<Vec<_>>>()?)
     };
-    let usual = named(WAYS[0]);
+    let usual = WAYS[0].name();
     let mut lines = Table::of("outside", "What light that leaves a stone meets", report.rungs(MEASURES[0]))
         .column("meets", |way| (*way).to_owned());
     for scene in SCENES {
@@ -184,7 +209,7 @@ fn table(report: &Report) -> Table {
             });
     }
     lines.note(format!(
-        "Each scene from {} angles, {} pixels of one sample, stones by `walk-8+tracker`: errors against the reference \
+        "Each scene from {} angles, {} pixels of one sample, stones by `walk-8+tracker` where no other rung is named: errors against the reference \
          over the pixels that show a stone; times of the whole frame; means over the angles. Times: {}.",
         VIEWS.len(),
         report.size(),

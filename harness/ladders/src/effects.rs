@@ -111,6 +111,27 @@ fn in_glass() -> Result<Scene, CostError> {
     Ok(Scene { lights: sunlit("brilliant")?.lights, ..scene })
 }
 
+/// Returns a ball of glass, whose images are those of the head, with wax inside.
+fn painted_glass() -> Result<Scene, CostError> {
+    let [head, wax] = [one("head")?, one("wax")?].map(|scene| scene.objects.into_iter().next());
+    let (Some(head), Some(wax)) = (head, wax) else { return Ok(one("ruby")?) };
+    let images = head.material;
+    let material = Material {
+        ior: 1.5,
+        transmission: 1.0,
+        roughness: 0.0,
+        thickness: 1.0,
+        transmission_texture: images.base_color_texture.clone(),
+        base_color_texture: images.base_color_texture,
+        normal_texture: images.normal_texture,
+        ..Material::standard()
+    };
+    let mut mesh = sphere(1.0, 48);
+    mesh.colors = vec![Vec3::ONE; mesh.positions.len()];
+    let within = Object::new("wax", sphere(0.5, 48), wax.material);
+    Ok(Scene { objects: vec![Object::new("glass", mesh, material), within], ..sunlit("brilliant")? })
+}
+
 fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     let settings = |rung: &str| {
         let rung: Rung = rung.parse().unwrap_or(Rung::ByMaterial);
@@ -215,6 +236,28 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             settings: settings("scene-16+3"),
             effects: &[Effect::Rough, Effect::PartialTransmission, Effect::Absorption, Effect::EnvironmentMap],
             stands_on: &[],
+        },
+        Case {
+            name: "wax in a glass ball with images, a sun",
+            scene: painted_glass()?,
+            settings: settings("scene-16"),
+            effects: &[
+                Effect::Nested,
+                Effect::Around,
+                Effect::Cdrf,
+                Effect::HalfSpace,
+                Effect::BaseColorTexture,
+                Effect::NormalTexture,
+                Effect::PartialTransmission,
+                Effect::TransmissionTexture,
+                Effect::VertexColor,
+                Effect::EnvironmentMap,
+            ],
+            stands_on: &[
+                (Effect::Cdrf, Effect::Around),
+                (Effect::HalfSpace, Effect::Around),
+                (Effect::TransmissionTexture, Effect::PartialTransmission),
+            ],
         },
         Case {
             name: "brilliant, a sun",

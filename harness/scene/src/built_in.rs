@@ -13,6 +13,7 @@ mod prisms;
 mod stone;
 mod translucent;
 mod tray;
+mod tumbler;
 mod vitrine;
 
 /// Builds the scene called `name`.

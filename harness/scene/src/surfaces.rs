@@ -31,6 +31,43 @@ pub fn torus(major: f64, minor: f64, columns: u32, rows: u32) -> Mesh {
     })
 }
 
+/// Returns a body turned about the y axis: `corners` are radius and height along its outline, from one end on the axis to the
+/// other, with the body to the right. Corners are rounded by `radius`, or by half the shorter edge there, in a few steps. u runs
+/// around the axis.
+#[must_use]
+pub fn lathe(corners: &[DVec2], radius: f64, columns: u32) -> Mesh {
+    let outline = rounded(corners, radius);
+    let rows = outline.len() as u32 - 1;
+    grid([columns, rows], |uv| {
+        let (place, normal) = outline[(uv.y * f64::from(rows)).round() as usize];
+        let azimuth = TAU * uv.x.fract();
+        let outward = DVec3::new(azimuth.sin(), 0.0, azimuth.cos());
+        (place.x * outward + place.y * DVec3::Y, normal.x * outward + normal.y * DVec3::Y)
+    })
+}
+
+/// Returns the places and normals along a line whose inner corners are rounded.
+fn rounded(corners: &[DVec2], radius: f64) -> Vec<(DVec2, DVec2)> {
+    const STEPS: u32 = 6;
+    let edge = |from: usize| corners[from + 1] - corners[from];
+    let normal = |from: usize| edge(from).perp().normalize();
+    let last = corners.len() - 2;
+    let mut outline = vec![(corners[0], normal(0))];
+    for corner in 1..=last {
+        let at = corners[corner];
+        let (before, after) = (edge(corner - 1), edge(corner));
+        let reach = radius.min(0.5 * before.length()).min(0.5 * after.length());
+        let (start, end) = (at - reach * before.normalize(), at + reach * after.normalize());
+        for step in 0..=STEPS {
+            let share = f64::from(step) / f64::from(STEPS);
+            let place = start.lerp(at, share).lerp(at.lerp(end, share), share);
+            outline.push((place, normal(corner - 1).lerp(normal(corner), share).normalize()));
+        }
+    }
+    outline.push((corners[last + 1], normal(last)));
+    outline
+}
+
 /// Returns a box about the origin with half sizes `half`, its edges and corners rounded with
 /// `radius`, by `steps` quadrilaterals from the middle of an edge to each of its two faces. Its
 /// faces are flat up to their borders. It has no texture coordinates.
@@ -155,6 +192,17 @@ mod tests {
             assert!((corners[1] - corners[0]).cross(corners[2] - corners[0]).y > 0.0);
             assert!(triangle.iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::Y));
         }
+    }
+
+    #[test]
+    fn a_turned_outline_is_closed_and_has_its_volume() {
+        let corners = [DVec2::new(0.0, 2.0), DVec2::new(1.0, 2.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 0.0)];
+        check(&lathe(&corners, 1e-4, 128), 2.0 * PI, 6.0 * PI);
+        let mesh = lathe(&corners, 0.2, 64);
+        assert!(crate::convex::is_closed(&mesh));
+        // A corner that is rounded loses less than its square.
+        let (volume, _) = mesh.volume_and_area();
+        assert!(volume < 2.0 * PI && volume > 2.0 * PI - 2.0 * TAU * 0.2 * 0.2, "{volume}");
     }
 
     #[test]

@@ -54,7 +54,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 pub(super) const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 56] = [
+pub const SHOTS: [Shot; 57] = [
     Shot {
         paragraph: "Each body by what its material calls for: a table and a stand that are opaque, a diamond with \
             dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
@@ -171,6 +171,12 @@ pub const SHOTS: [Shot; 56] = [
     Shot {
         paragraph: "A stone in its setting. Facets show the prongs and the band, and not only the studio.",
         ..shot("solitaire", "A diamond on a band", "solitaire", BY_MATERIAL)
+    },
+    Shot {
+        quality: Quality::Fast,
+        paragraph: "Bodies within bodies: water in glass, a straw in the water, which is larger behind it and breaks at its surface, and a candle \
+            behind frosted glass.",
+        ..shot("tumbler", "A glass of water with a straw, and a candle behind frosted glass", "tumbler", BY_MATERIAL)
     },
     by_lights("skin", "Skin: spheres of falling radius", "skin", "accurate"),
     Shot {

@@ -229,8 +229,15 @@ fn gem_arriving(meeting: GemMeeting, position: vec3f, direction: vec3f) -> vec3f
             }
         }
     }
-    if (meeting.is_bounded) {
-        return meeting.bounded;
+    if (EFFECT_AROUND) {
+        if (meeting.is_bounded) {
+            return meeting.bounded;
+        }
+    }
+    if (EFFECT_BOUNDS_TRACE) {
+        if (meeting.is_bounded) {
+            return meeting.bounded;
+        }
     }
     if (EFFECT_LIGHT) {
         return gem_lit(gem_world_position(position), gem_world_direction(direction));  //+light

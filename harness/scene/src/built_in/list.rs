@@ -1,6 +1,6 @@
 //! The list of the built-in scenes: names, descriptions, and how each is made.
 
-use super::{cut, materials, pave, prisms, stone, translucent, tray, vitrine};
+use super::{cut, materials, pave, prisms, stone, translucent, tray, tumbler, vitrine};
 use crate::polyhedron::Triangulation;
 use crate::{Averaging, Scene, SceneError};
 
@@ -16,7 +16,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 33] = [
+pub const BUILT_IN: [BuiltIn; 34] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -96,6 +96,12 @@ pub const BUILT_IN: [BuiltIn; 33] = [
         description: "A diamond in four prongs on a band, matte as painted, over a dark plate. Bounds say little of a band: \
             what leaves the stone downwards starts inside the band's box.",
         make: tray::solitaire,
+    },
+    BuiltIn {
+        name: "tumbler",
+        description: "A glass of water with a straw, which breaks at the water, and a candle of wax behind a pane of frosted glass: bodies \
+            within bodies, smooth, rough and scattering ones. Where water and glass overlap, the glass is there.",
+        make: tumbler::tumbler,
     },
     BuiltIn {
         name: "bunny_stone",
