@@ -174,6 +174,7 @@ pub const SHOTS: [Shot; 57] = [
     },
     Shot {
         quality: Quality::Fast,
+        side: 256,
         paragraph: "Bodies within bodies: water in glass, a straw in the water, which is larger behind it and breaks at its surface, and a candle \
             behind frosted glass.",
         ..shot("tumbler", "A glass of water with a straw, and a candle behind frosted glass", "tumbler", BY_MATERIAL)
