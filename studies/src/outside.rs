@@ -59,7 +59,7 @@ const MEASURES: [&str; 3] = ["flip", "rmse", "energy"];
 
 /// Returns how to measure by default; there are no rungs to choose.
 pub fn options() -> Options {
-    Options { rounds: 7, frame: [512, 384], rungs: Vec::new() }
+    Options { rounds: 5, frame: [256, 192], rungs: Vec::new() }
 }
 
 impl Way {

@@ -255,7 +255,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             ],
             stands_on: &[
                 (Effect::Cdrf, Effect::Around),
-                (Effect::HalfSpace, Effect::Around),
+                (Effect::HalfSpace, Effect::Cdrf),
                 (Effect::TransmissionTexture, Effect::PartialTransmission),
             ],
         },
