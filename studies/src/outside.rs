@@ -78,7 +78,7 @@ impl Way {
                 let gem = GemOptions { outside: Some(outside), screen_steps, ..GemOptions::default() };
                 Settings { gem, ..usual.clone() }
             }
-            Self::Among(rung) => Settings { rung: rung.parse().unwrap_or(Rung::ByMaterial), ..usual.clone() },
+            Self::Among(rung) => Settings { rung: rung.parse().expect("a rung"), ..usual.clone() },
         }
     }
 }

@@ -9,6 +9,10 @@ use crate::request::Scattering;
 use crate::{Quality, Request, Rung};
 use lapidary_scene::{Object, Scene, Shape, TextureSlot};
 
+/// Triangles of a scene up to which copies are drawn as bodies of their own: of more, the corners are beyond a buffer that every
+/// device offers.
+const MOST_JOINED: usize = 2_500_000;
+
 /// How an object is drawn: by a rung that the user or the material names, or by a technique.
 pub(super) enum Choice {
     /// A named rung.
@@ -86,7 +90,8 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return Some(format!("in the view it overlaps {}, which is clear", other.name));
     }
     // A search of all copies for each hit takes many times as long as planes of one.
-    if request.quality == Quality::Best && has(Effect::Behind) && among::copies_overlap(object, scene, request.size) {
+    let is_best = request.quality == Quality::Best && scene.triangle_count() <= MOST_JOINED;
+    if is_best && has(Effect::Behind) && among::copies_overlap(object, scene, request.size) {
         return Some("in the view its copies overlap".to_owned());
     }
     if request.quality == Quality::Fast || !has(Effect::Around) {

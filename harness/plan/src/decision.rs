@@ -225,8 +225,8 @@ impl Case<'_> {
     }
 
     fn half_space(&self) -> Answer {
-        if self.is_gem() && self.request.quality != Quality::Fast {
-            return self.spread_met();
+        if self.is_gem() {
+            return self.law_met();
         }
         match self.rung {
             Rung::Diffusion(_) => return off("part of diffusion"),
@@ -509,7 +509,7 @@ impl Case<'_> {
     }
 
     fn coverage(&self) -> Answer {
-        if self.is_among() && self.around().0 {
+        if self.meets_opaque() {
             return match self.scene.objects.iter().find(|object| among::is_sheer(object)) {
                 Some(object) => on(format!("{} covers a share of what is behind it", object.name)),
                 None => off("opaque bodies cover all that is behind them"),

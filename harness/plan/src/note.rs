@@ -161,6 +161,11 @@ pub enum Note {
         /// The rung that draws them.
         rung: Rung,
     },
+    /// Scattering bodies that clear ones show by a simpler way than their own.
+    SimplerThroughOthers {
+        /// The objects concerned.
+        objects: Objects,
+    },
     /// A clear body within more clear ones than a ray knows.
     TooDeep {
         /// The objects concerned.
@@ -245,6 +250,7 @@ impl Note {
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
             | Self::CopiesApart { .. }
+            | Self::SimplerThroughOthers { .. }
             | Self::OtherColor { .. }
             | Self::NotCompared { .. }
             | Self::TooDeep { .. }
@@ -366,8 +372,13 @@ impl fmt::Display for Note {
             }
             Self::CopiesApart { objects, rung } => write!(
                 f,
-                "{objects}: rung `{rung}` follows light through one copy, and what leaves it meets no other; `--quality best` follows it through \
+                "{objects}: rung `{rung}` follows light through one copy, and what leaves it meets no other; rung `scene-16+3` follows it through \
                  all"
+            ),
+            Self::SimplerThroughOthers { objects } => write!(
+                f,
+                "{objects}: through clear bodies it looks as rung `drift` draws it: no light comes through it there, all light enters it, and \
+                 its images of thickness and diffuse transmission are left out"
             ),
             Self::NotCompared { count } => write!(
                 f,
@@ -455,6 +466,10 @@ mod tests {
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
             line_of(Note::CopiesApart { objects: objects(1), rung }, "what leaves it meets no other"),
+            line_of(
+                Note::SimplerThroughOthers { objects: objects(1) },
+                "through clear bodies it looks as rung `drift` draws it",
+            ),
             line_of(Note::TooDeep { objects: objects(1), within: 6, rung }, "6 clear bodies lie within one another"),
             line_of(Note::NotCompared { count: 900 }, "900 bodies: too many to look which of them share space"),
             line_of(Note::EyeWithin { objects: objects(1), rung }, "object `hare`: the camera stands inside"),

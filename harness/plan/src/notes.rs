@@ -37,9 +37,10 @@ pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec
     if is_out_of_view(scene, request) {
         notes.push(Note::NothingInView);
     }
+    let is_shown_through = decisions.iter().any(|of| of.rung.is_among() && of.has(Effect::Cdrf));
     for (object, decisions) in scene.objects.iter().zip(decisions) {
         let shows_lights = decisions.has(Effect::Light) || request.without.has(Effect::Light);
-        let case = Case { object, rung: decisions.rung, shows_lights, scene, request };
+        let case = Case { object, rung: decisions.rung, shows_lights, is_shown_through, scene, request };
         for note in case.notes(around) {
             add(&mut notes, note);
         }
@@ -54,6 +55,8 @@ struct Case<'a> {
     rung: Rung,
     /// Whether lights are seen in a clear body, or left out on request.
     shows_lights: bool,
+    /// Whether clear bodies show scattering ones.
+    is_shown_through: bool,
     scene: &'a Scene,
     request: &'a Request<'a>,
 }
@@ -83,6 +86,7 @@ impl Case<'_> {
         if is_followed && self.object.mesh.encloses(self.scene.camera.eye) {
             notes.push(Note::EyeWithin { objects: objects.clone(), rung });
         }
+        notes.extend(self.simpler_through_others(&objects));
         notes.extend(self.other_color(&objects));
         notes.extend(self.polished(&objects));
         let lit = is_followed && !self.scene.lights.is_empty();
@@ -100,6 +104,17 @@ impl Case<'_> {
         notes.extend(self.black(&objects));
         notes.extend(self.white(&objects, around));
         notes
+    }
+
+    /// Returns a note if a scattering body looks simpler through clear ones than by itself.
+    fn simpler_through_others(&self, objects: &Objects) -> Option<Note> {
+        let Object { mesh, material, .. } = self.object;
+        let has = |slot| material.texture(slot).is_some() && material.calls_for(slot) && !mesh.uvs.is_empty();
+        let is_through = matches!(self.rung, Rung::OpticalPath(_) | Rung::Diffusion(_));
+        let varies = has(TextureSlot::Thickness) || has(TextureSlot::DiffuseTransmission);
+        let is_simpler = is_through || varies || material.share_that_enters() < 1.0;
+        (self.is_shown_through && material.scatters() && is_simpler)
+            .then(|| Note::SimplerThroughOthers { objects: objects.clone() })
     }
 
     /// Returns a note if a scattering body's coefficients have another colour than its base colour, unless that is white, as
@@ -128,8 +143,10 @@ impl Case<'_> {
     /// Returns the images, and the colours of vertices, that the rung leaves out.
     fn factors_alone(&self) -> Vec<&'static str> {
         let Object { mesh, material, .. } = self.object;
-        let is_followed = material.is_clear() && (self.rung.is_among() || self.rung == Rung::Reference);
-        let draws = self.rung.draws_images() || is_followed;
+        let by_reference = self.rung == Rung::Reference;
+        let is_followed = material.is_clear() && (self.rung.is_among() || by_reference);
+        let is_matte = material.is_opaque() && by_reference;
+        let draws = self.rung.draws_images() || is_followed || is_matte;
         let spreads = self.rung.spreads_by_curvature();
         let slots = [
             (TextureSlot::BaseColor, draws),
@@ -142,8 +159,8 @@ impl Case<'_> {
             !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
         };
         let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
-        let by_factor = self.rung == Rung::Reference && material.base_color_texture.is_none();
-        let alpha = ((!draws || is_followed) && !by_factor && !material.covers_all()).then_some("alphaMode");
+        let draws_alpha = self.rung.draws_images() || is_matte;
+        let alpha = (!draws_alpha && !material.covers_all()).then_some("alphaMode");
         slots.into_iter().filter(lost).map(|(slot, _)| slot.name()).chain(colors).chain(alpha).collect()
     }
 

@@ -90,7 +90,7 @@ fn follow(
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }
     let environment = (!settings.without.has(Effect::Environment)).then_some(&settings.environment);
-    let lone = Lone::all(scene, settings.walks.boundary, environment)?;
+    let lone = Lone::all(scene, environment)?;
     let scatterers: Vec<Option<&dyn Scatterer>> =
         lone.iter().map(|lone| lone.as_ref().map(|lone| lone as &dyn Scatterer)).collect();
     let (width, height) = (settings.width, settings.height);

@@ -41,7 +41,8 @@ struct SceneImage {
     layer: i32,
     wrap: u32,
     size: vec2u,
-    // Share of what is behind that alpha 1 covers, and the share from which on it covers all; below 0 to mix.
+    // Share of what is behind that alpha 1 covers, below 0 if it covers all whatever its alpha; and the share from
+    // which on it covers all, below 0 to mix.
     share: f32,
     cutoff: f32,
 }
@@ -105,13 +106,14 @@ fn scene_texels(coordinate: f32, side: u32, wrap: u32) -> vec3f {
     let place = within * size - 0.5f;
     let first = floor(place);
     var texels = clamp(vec2f(first, first + 1.0f), vec2f(0.0f), vec2f(size - 1.0f));
+    // They are at most one beyond either end.
     if (wrap == SCENE_REPEAT) {
-        texels = vec2f(first, first + 1.0f) - size * floor(vec2f(first, first + 1.0f) / size);
+        texels = vec2f(select(first, size - 1.0f, first < 0.0f), select(first + 1.0f, 0.0f, first + 1.0f >= size));
     }
     if (wrap == SCENE_MIRROR) {
-        let other = vec2f(first, first + 1.0f);
-        let along = other - 2.0f * size * floor(other / (2.0f * size));
-        texels = min(along, 2.0f * size - 1.0f - along);
+        let beside = vec2f(max(first, 0.0f), first + 1.0f);
+        let back = 2.0f * size - 1.0f - beside;
+        texels = select(beside, back, beside >= vec2f(size));
     }
     return vec3f(clamp(texels, vec2f(0.0f), vec2f(size - 1.0f)), place - first);
 }
@@ -146,6 +148,9 @@ fn scene_image_color(place: ScenePlace) -> vec4f {
         return vec4f(1.0f, 1.0f, 1.0f, -1.0f);
     }
     let texel = scene_texel(image, place);
+    if (image.share < 0.0f) {
+        return vec4f(texel.rgb, -1.0f);
+    }
     let share = image.share * texel.a;
     return vec4f(texel.rgb, select(share, select(0.0f, 1.0f, share >= image.cutoff), image.cutoff >= 0.0f));
 }

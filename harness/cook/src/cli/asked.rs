@@ -224,8 +224,8 @@ impl Asked {
         if settings.rung == Rung::Reference {
             if settings.shadows {
                 return Err(Failure(format!(
-                    "rung `reference` knows no --with {SHADOW}: what scatters light has shadows there anyway, and what is matte \
-                     has none; leave it out"
+                    "rung `reference` knows no --with {SHADOW}: what scatters light, alone in a scene, has shadows there anyway, and what is \
+                     matte has none; leave it out"
                 )));
             }
             let others: Vec<&Effect> =

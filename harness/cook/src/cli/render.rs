@@ -103,7 +103,7 @@ impl Arguments {
             draws: |rung, scatters| rung == Rung::Reference && !scatters,
         });
         let walks = self.walks.iter().map(|walks| Given {
-            technique: "the reference of scattering bodies",
+            technique: "the reference of scattering bodies alone",
             flags: given([
                 ("--walks", walks.walks.is_some()),
                 ("--walks-from", walks.walks_from.is_some()),

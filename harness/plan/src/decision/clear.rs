@@ -284,9 +284,14 @@ impl Case<'_> {
         }
     }
 
+    /// Whether light through this body meets others that are not clear, by their triangles.
+    pub(super) fn meets_opaque(&self) -> bool {
+        self.is_among() && !self.request.without.has(Effect::Around) && self.around().0
+    }
+
     /// Returns the first body that is as wanted, of those whose surface light through this one meets.
     fn first_met(&self, wanted: impl Fn(&Object) -> bool) -> Option<&Object> {
-        let meets_opaque = self.is_among() && self.around().0;
+        let meets_opaque = self.meets_opaque();
         self.first(|object| (object.material.is_clear() || meets_opaque) && wanted(object))
     }
 
@@ -294,6 +299,22 @@ impl Case<'_> {
     pub(super) fn spread_met(&self) -> Answer {
         match self.first_met(|object| object.material.scatters()) {
             Some(object) if self.is_among() => on(format!("light scatters in {}", object.name)),
+            _ => off("nothing inside scatters"),
+        }
+    }
+
+    /// The same for the law of its matter, where the body itself has it.
+    pub(super) fn law_met(&self) -> Answer {
+        match self.first_met(|object| object.material.scatters()) {
+            Some(object) if self.is_among() => {
+                let usual = self.request.rung_of(object) == Rung::ByMaterial && self.request.quality != Quality::Fast;
+                let is_on = self.request.half_space || usual;
+                if is_on {
+                    on(format!("light scatters in {}", object.name))
+                } else {
+                    off("quality fast, or a rung is asked for")
+                }
+            }
             _ => off("nothing inside scatters"),
         }
     }

@@ -40,9 +40,19 @@ fn turned(mesh: &Mesh) -> Mesh {
 }
 
 #[test]
-fn nothing_is_said_of_the_built_ins() {
+fn little_is_said_of_the_built_ins() {
     for built_in in BUILT_IN {
-        assert_eq!(said(&named(built_in.name), &usual()), [""; 0], "{}", built_in.name);
+        let expected: &[&str] = match built_in.name {
+            "pave_ring" => &["follows light through one copy"],
+            "tumbler" => {
+                &["`water`: shares space with the clear `glass`", "`straw`: shares space with the clear `water`"]
+            }
+            _ => &[],
+        };
+        let said = said(&named(built_in.name), &usual());
+        let is_as_expected =
+            said.len() == expected.len() && said.iter().zip(expected).all(|(note, part)| note.contains(part));
+        assert!(is_as_expected, "{}: {said:?}", built_in.name);
     }
 }
 

@@ -97,8 +97,9 @@ impl Paint {
         let scale = f64::from(self.material.normal_scale);
         let tilt = (2.0 * texel.truncate().as_dvec3() - 1.0) * DVec3::new(scale, scale, 1.0);
         let tilt = tilt.try_normalize().unwrap_or(DVec3::Z);
-        let transform = texture.transform.affine();
-        let [a, b, c] = self.uvs[face].map(|uv| transform.transform_point2(uv).as_dvec2());
+        let linear = texture.transform.affine().matrix2.as_dmat2();
+        let [a, b, c] = self.uvs[face].map(|uv| uv.as_dvec2());
+        let (to_b, to_c) = (linear * (b - a), linear * (c - a));
         let [first, second] = of_face.edges();
         // The gradients of u and v over the surface.
         let (toward_first, toward_second) = (second.cross(normal), normal.cross(first));
@@ -106,7 +107,7 @@ impl Paint {
         let along = |first: f64, second: f64| {
             (turn * (toward_first * first + toward_second * second)).try_normalize().unwrap_or_default()
         };
-        let (u, v) = (along((b - a).x, (c - a).x), along((b - a).y, (c - a).y));
-        (tilt.x * u - tilt.y * v + tilt.z.max(1e-3) * normal).normalize()
+        let (u, v) = (along(to_b.x, to_c.x), along(to_b.y, to_c.y));
+        (tilt.x * u - tilt.y * v + tilt.z.abs().max(1e-3) * normal).normalize()
     }
 }

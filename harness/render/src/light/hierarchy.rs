@@ -77,8 +77,11 @@ impl Hierarchy {
         let normals: Vec<Vec4> = bvh.indices.iter().map(|index| normals[*index as usize]).collect();
         let mut paint = Paint::new(settings.footprint_of(&scene.camera));
         if !uvs.is_empty() || !colors.is_empty() {
-            let of_bodies =
-                bodies.iter().map(|body| paint.body(&body.material)).collect::<Result<Vec<u32>, RenderError>>()?;
+            let images = |body: &Body| {
+                let has_places = !scene.objects[body.object].mesh.uvs.is_empty();
+                if has_places { paint.body(&body.material, settings.without) } else { Ok(0) }
+            };
+            let of_bodies = bodies.iter().map(images).collect::<Result<Vec<u32>, RenderError>>()?;
             for (corner, index) in corners.iter().zip(&bvh.indices) {
                 let vertex = *index as usize;
                 let uv = uvs.get(vertex).copied().unwrap_or_default();

@@ -5,6 +5,7 @@ use crate::frame::{Bound, Builder, Texture as Bounded, level_size};
 use crate::material::textures::levels_of;
 use exr::prelude::f16;
 use glam::{Vec2, Vec3, Vec4};
+use lapidary_plan::{Effect, Effects};
 use lapidary_scene::{Material, Texture, TextureSlot, Wrap};
 use std::sync::Arc;
 
@@ -15,6 +16,8 @@ pub(crate) const BINDINGS: [u32; 2] = [19, 20];
 const ROW: usize = 4096;
 /// Images in a texture that every device offers.
 const MOST_IMAGES: usize = 256;
+/// Bytes that all images together take at most; of larger ones, smaller levels are kept.
+const MOST_BYTES: u64 = 512 << 20;
 /// Texels of an image's entry.
 const ENTRY: usize = 3;
 /// Slots of a body's images, in the order of their entries.
@@ -49,8 +52,14 @@ impl Paint {
     }
 
     /// Adds the images of a body; returns the number of its first texel, 0 if it has none.
-    pub(crate) fn body(&mut self, material: &Material) -> Result<u32, RenderError> {
-        let has = |slot: &TextureSlot| material.texture(*slot).is_some() && material.calls_for(*slot);
+    pub(crate) fn body(&mut self, material: &Material, without: Effects) -> Result<u32, RenderError> {
+        let is_left_out = |slot| match slot {
+            TextureSlot::Normal => without.has(Effect::NormalTexture),
+            TextureSlot::Transmission => without.has(Effect::TransmissionTexture),
+            _ => without.has(Effect::BaseColorTexture),
+        };
+        let has =
+            |slot: &TextureSlot| material.texture(*slot).is_some() && material.calls_for(*slot) && !is_left_out(*slot);
         if !SLOTS.iter().any(has) {
             return Ok(0);
         }
@@ -83,6 +92,7 @@ impl Paint {
             None => {
                 let (size, levels) = levels_of(texture, (slot == TextureSlot::Normal).then_some(scale));
                 self.layers.push(Layer { texture: texture.clone(), scale, size, levels });
+                self.shrink();
                 self.layers.len() - 1
             }
         };
@@ -90,15 +100,38 @@ impl Paint {
         let row = |row: usize| {
             Vec3::new(transform.matrix2.row(row).x, transform.matrix2.row(row).y, transform.translation[row])
         };
-        let [width, height] = self.layers[layer].size.map(|side| side as f32);
         let wrap = texture.wrap.map(code);
         let (share, cutoff) =
-            material.coverage.map_or((1.0, -1.0), |coverage| (coverage.share, coverage.cutoff.unwrap_or(-1.0)));
+            material.coverage.map_or((-1.0, -1.0), |coverage| (coverage.share, coverage.cutoff.unwrap_or(-1.0)));
+        // The size follows once all images are there.
         Ok([
             row(0).extend(layer as f32),
             row(1).extend((wrap[0] + 4 * wrap[1]) as f32),
-            Vec4::new(width, height, share, cutoff),
+            Vec4::new(0.0, 0.0, share, cutoff),
         ])
+    }
+
+    /// Takes the first level from the largest images until all together take no more than they may.
+    fn shrink(&mut self) {
+        while self.bytes() > MOST_BYTES {
+            let longest = |layer: &Layer| layer.size[0].max(layer.size[1]);
+            let largest = self.layers.iter().map(longest).max().unwrap_or(1);
+            for layer in self.layers.iter_mut().filter(|layer| longest(layer) == largest) {
+                layer.size = level_size(layer.size, 1);
+                layer.levels.remove(0);
+            }
+        }
+    }
+
+    /// Returns the width and height that hold all images.
+    fn size(&self) -> [u32; 2] {
+        [0, 1].map(|axis| self.layers.iter().map(|layer| layer.size[axis]).max().unwrap_or(1))
+    }
+
+    /// Returns the bytes of the texture of all images, whose levels together take a third more than the first.
+    fn bytes(&self) -> u64 {
+        let [width, height] = self.size().map(u64::from);
+        self.layers.len() as u64 * width * height * 8 / 3 * 4
     }
 
     /// Adds a corner of a triangle whose body's images start at a texel.
@@ -111,7 +144,14 @@ impl Paint {
         let first = 1 + self.entries.len();
         let head = Vec4::new(first as f32, self.footprint, 0.0, 0.0);
         let mut texels = vec![head];
-        texels.extend(self.entries.iter().chain(&self.corners));
+        texels.extend(&self.entries);
+        for entry in texels[1..].chunks_exact_mut(ENTRY) {
+            if let Some(layer) = self.layers.get(entry[0].w as usize).filter(|_| entry[0].w >= 0.0) {
+                let [width, height] = layer.size.map(|side| side as f32);
+                (entry[2].x, entry[2].y) = (width, height);
+            }
+        }
+        texels.extend(&self.corners);
         let rows = texels.len().div_ceil(ROW);
         let most = wgpu::Limits::default().max_texture_dimension_2d as usize;
         let bytes = (rows * ROW * size_of::<Vec4>()) as u64;
@@ -133,8 +173,7 @@ impl Paint {
 
     /// Returns the size of the texture of all images, the number of its levels, and their bytes, layer by layer, level by level.
     fn stacked(&self) -> ([u32; 3], (u32, Vec<u8>)) {
-        let side = |axis: usize| self.layers.iter().map(|layer| layer.size[axis]).max().unwrap_or(1);
-        let size = [side(0), side(1)];
+        let size = self.size();
         let count = size[0].max(size[1]).ilog2() + 1;
         let black: Layer;
         let layers = if self.layers.is_empty() {

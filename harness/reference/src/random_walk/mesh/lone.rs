@@ -5,11 +5,11 @@ use super::walk::{Beginnings, Matter, Ray};
 use super::{WalkError, matter};
 use crate::spectral::Scatterer;
 use glam::DVec3;
-use lapidary_scene::{Environment, Scene};
+use lapidary_scene::{Environment, Object, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
 use std::fmt;
 
-/// A body, lit by the lights and the environment of its scene as if nothing else were there.
+/// A body without a boundary, lit by the lights and the environment of its scene as if nothing else were there.
 pub struct Lone<'scene>(Matter<'scene>);
 
 impl fmt::Debug for Lone<'_> {
@@ -23,16 +23,20 @@ impl<'scene> Lone<'scene> {
     ///
     /// # Errors
     /// Returns a [`WalkError`] if light cannot be followed through a body.
-    pub fn all(
-        scene: &Scene,
-        boundary: Boundary,
-        environment: Option<&'scene Environment>,
-    ) -> Result<Vec<Option<Self>>, WalkError> {
-        let lone = |object: &lapidary_scene::Object| {
-            let alone = Scene { objects: vec![object.clone()], ..scene.clone() };
-            matter(&alone, boundary, environment).map(Self)
+    pub fn all(scene: &Scene, environment: Option<&'scene Environment>) -> Result<Vec<Option<Self>>, WalkError> {
+        let lone = |object: &Object| {
+            let alone = Scene {
+                name: scene.name.clone(),
+                objects: vec![object.clone()],
+                lights: scene.lights.clone(),
+                light_radii: scene.light_radii.clone(),
+                camera: scene.camera,
+                lacking: Vec::new(),
+            };
+            // Walks from the eye alone miss light that a boundary reflects inside before it scatters.
+            matter(&alone, Boundary::Matched, environment).map(Self)
         };
-        let scatters = |object: &lapidary_scene::Object| object.material.scatters();
+        let scatters = |object: &Object| object.material.scatters();
         scene.objects.iter().map(|object| scatters(object).then(|| lone(object)).transpose()).collect()
     }
 }

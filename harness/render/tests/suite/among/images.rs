@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::{Vec2, Vec4};
-use lapidary_scene::{Coverage, Encoding, Texels, Texture, Wrap};
+use lapidary_scene::{Coverage, Encoding, Texels, Texture, TextureTransform, Wrap};
 use std::sync::Arc;
 
 /// A block whose texture coordinates run from 0 to 1 over the picture.
@@ -92,6 +92,68 @@ fn an_image_behind_a_pane_is_seen() {
     let mask = Some(Coverage { share: 1.0, cutoff: Some(0.5) });
     let holed = card(&[RED, [0, 188, 0, 0]], mask);
     expect(vec![pane, holed], [DVec3::X * LIT, DVec3::ONE], "a card with a hole");
+}
+
+/// An opaque body stays whole whatever the alpha of its image, beside one that is not.
+#[test]
+fn alpha_counts_where_the_material_says_so() {
+    let pane = Object::new("pane", cube(0.9), Material { thickness: 0.0, ..glass(1.0) });
+    let clear_image = image(&[[188, 0, 0, 0], [0, 188, 0, 0]], Encoding::Srgb);
+    let whole = block(0.5, Material { base_color_texture: clear_image, ..matte(Vec3::ONE) });
+    let coverage = Some(Coverage { share: 0.5, cutoff: None });
+    let sheer = ball(0.1, DVec3::new(0.0, 0.6, 0.0), Material { coverage, ..matte(Vec3::ONE) });
+    expect(vec![pane, whole, sheer], [DVec3::X * LIT, DVec3::Y * LIT], "an opaque card");
+}
+
+/// Images that repeat or are mirrored, moved and turned, of several sizes and in all slots, with colours of vertices, on smooth,
+/// flat, clear and matte bodies: beside the reference.
+#[test]
+fn images_go_on_as_their_samplers_say() {
+    let textured = |size: [u32; 2], encoding, wrap, place: usize| {
+        let wave =
+            |x: u32, y: u32, axis: u32| (110.0 + 70.0 * f32::sin(0.5 * (x + axis * y) as f32 + place as f32)) as u8;
+        let texel = |y: u32, x: u32| [wave(x, y, 0), wave(x, y, 1), 230, wave(y, x, 2)];
+        let bytes = (0..size[1]).flat_map(|y| (0..size[0]).flat_map(move |x| texel(y, x))).collect();
+        let texels = Arc::new(Texels::new(size[0], size[1], bytes).expect("an image"));
+        let (offset, scale) = (Vec2::new(0.3, -1.2), Vec2::new(1.7, 1.1));
+        let transform = TextureTransform { offset, rotation: 0.4, scale };
+        Some(Texture { wrap, transform, ..Texture::new(texels, encoding) })
+    };
+    let wraps = [[Wrap::Repeat, Wrap::MirroredRepeat], [Wrap::MirroredRepeat, Wrap::ClampToEdge], [Wrap::Repeat; 2]];
+    let painted = |material: Material, place: usize| Material {
+        base_color_texture: textured([13, 7], Encoding::Srgb, wraps[place % 3], place),
+        normal_texture: textured([16, 11], Encoding::Linear, wraps[(place + 1) % 3], place + 1),
+        normal_scale: 0.2,
+        transmission_texture: textured([5, 12], Encoding::Linear, wraps[(place + 2) % 3], place + 2),
+        ..material
+    };
+    let colored = |mut object: Object| {
+        object.mesh.colors =
+            object.mesh.positions.iter().map(|at| (0.6 + 0.4 * *at).clamp(Vec3::ZERO, Vec3::ONE)).collect();
+        object
+    };
+    let smooth = Material { normals: Normals::File, ..glass(1.3) };
+    let objects = vec![
+        colored(block(0.5, painted(glass(1.4), 0))),
+        ball(0.4, DVec3::new(0.75, 0.1, 0.2), painted(smooth, 1)),
+        colored(ball(0.6, DVec3::new(0.1, -0.3, -1.6), painted(matte(Vec3::new(1.0, 0.8, 0.6)), 2))),
+    ];
+    let settings = |rung| Settings { environment: Environment::Studio, ..of_rung(rung) };
+    let [rung, reference] = ["scene-64", "reference"].map(|rung| drawn(&scene(objects.clone()), &settings(rung)));
+    let most = difference(&rung, &reference, 20).1;
+    assert!(most < 0.01, "{most}");
+}
+
+/// Of an image whose texels are smaller than the rays' distance, a level is read: the mean of black and white, not one of them.
+#[test]
+fn fine_images_are_read_by_their_levels() {
+    let columns: Vec<[u8; 4]> = (0..512).map(|x| if x % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] }).collect();
+    let pane = Object::new("pane", cube(0.9), Material { thickness: 0.0, ..glass(1.0) });
+    let card = block(0.5, Material { base_color_texture: image(&columns, Encoding::Linear), ..matte(Vec3::ONE) });
+    let picture = drawn(&scene(vec![pane, card]), &of_rung("by-material"));
+    for seen in halves(&picture) {
+        assert!((seen - 0.5).abs().max_element() < 5e-3, "{seen}");
+    }
 }
 
 /// Slopes by an image turn reflection and refraction as the surface's own would: beside the reference.

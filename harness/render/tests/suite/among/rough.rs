@@ -77,9 +77,7 @@ fn what_is_not_covered_is_seen() {
     let seen_with = |coverage, objects: fn(Object) -> Vec<Object>, rung: &str| {
         let screen = Material { coverage, ..matte(color) };
         let screen = Object::new("screen", cube(1.0).placed(DQuat::IDENTITY, -1.5 * DVec3::Z), screen);
-        // By Lambert's law, a body in which light scatters, too.
-        let without = Effects::of(&[Effect::HalfSpace]);
-        let settings = Settings { samples: 4, without, ..of_rung(rung) };
+        let settings = Settings { samples: 4, ..of_rung(rung) };
         middle(&drawn(&scene(objects(screen)), &settings))
     };
     let alone: fn(Object) -> Vec<Object> = |screen| vec![screen, ball(0.9, -4.0 * DVec3::Z, matte(Vec3::splat(0.5)))];
