@@ -104,15 +104,6 @@ pub enum RenderError {
         /// The rung asked for.
         rung: Rung,
     },
-    /// Rays over the picture would end at the borders of its tiles.
-    #[error(
-        "--outside screen follows rays over the whole picture, which is drawn in tiles above {largest}x{largest} pixels; take a smaller \
-         --size, fewer --samples, or --outside bodies"
-    )]
-    ScreenTiles {
-        /// Largest side of a tile in pixels.
-        largest: u32,
-    },
     /// A material that a rung for scattering bodies cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the module screen_trace.
 //
-// A recipe adds: the module screen_trace, and `view` with clip_from_world. Draw all other bodies
-// first, and copy their colour and depth to the textures that are bound here.
+// A recipe adds: the module screen_trace. Draw all other bodies first, and copy their colour and depth to the
+// textures that are bound here.
 
 // Rays that leave meet the bodies that the picture shows. Called for by the user.
 override EFFECT_SCREEN_TRACE: bool = false;
@@ -12,6 +12,8 @@ override SCREEN_STEPS: u32 = 8u;
 
 //+screen_trace {
 struct ScreenView {
+    // The camera of the picture: that of the bodies that are drawn, or of a larger view around it.
+    clip_from_world: mat4x4f,
     // Size of the picture in texels; the textures may be larger.
     size: vec2f,
     // Of the projection: z = scale w + offset.
@@ -40,13 +42,13 @@ fn screen_surface(clip: vec4f) -> f32 {
 
 // Radiance of the surface that is seen where a world point is; alpha is 0 if there is none.
 fn screen_seen(position: vec3f) -> vec4f {
-    return textureLoad(screen_radiance, screen_texel(view.clip_from_world * vec4f(position, 1.0f)), 0);
+    return textureLoad(screen_radiance, screen_texel(screen.clip_from_world * vec4f(position, 1.0f)), 0);
 }
 
 // Distance at which a ray meets a surface of the picture; below 0 if it meets none.
 fn screen_distance(position: vec3f, direction: vec3f) -> f32 {
-    let start = view.clip_from_world * vec4f(position, 1.0f);
-    let along = view.clip_from_world * vec4f(direction, 0.0f);
+    let start = screen.clip_from_world * vec4f(position, 1.0f);
+    let along = screen.clip_from_world * vec4f(direction, 0.0f);
     let reach = screen_trace_reach(start, along);
     if (reach == 0.0f) {
         return -1.0f;

@@ -2,7 +2,7 @@
 //! others, if their edges are smoothed or if what leaves them meets the others.
 
 use crate::error::RenderError;
-use crate::frame::{Bound, Builder, Depth, Target, Texture};
+use crate::frame::{Bound, Buffer, Builder, Depth, Target, Texture};
 use crate::light::lighting::Lighting;
 use crate::light::screen::{self, Picture};
 use crate::objects::draws::{self, SceneTarget, Variant};
@@ -18,6 +18,8 @@ pub(crate) struct Layers {
     footprint: Option<FootprintPass>,
     /// The picture of the other bodies, and how far they reach behind their front.
     screen: Option<(Picture, f32)>,
+    /// How it was drawn, if it is that of a whole frame that is drawn in tiles.
+    whole: Option<Buffer>,
 }
 
 impl Layers {
@@ -32,12 +34,23 @@ impl Layers {
         let footprint = FootprintPass::of(builder, settings, size)?;
         let [width, height] = size;
         let depth = builder.target("depth", [width, height, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
-        Ok(Self { samples, depth, footprint, screen: lighting.screen_in_use() })
+        Ok(Self { samples, depth, footprint, screen: lighting.screen_in_use(), whole: None })
     }
 
-    /// Whether rays are followed over the picture of the other bodies.
-    pub(crate) fn follows_screen(&self) -> bool {
-        self.screen.is_some()
+    /// Draws the picture of the other bodies that rays are followed over, if there is one, for all tiles of a frame.
+    pub(crate) fn draw_whole(
+        &mut self,
+        builder: &mut Builder<'_>,
+        variants: &[Variant],
+        (clip_from_world, eye): (Mat4, Vec3),
+        size: [u32; 2],
+    ) {
+        let Some((picture, thickness)) = self.screen else { return };
+        self.whole = Some(screen::view(builder, clip_from_world, size, thickness));
+        let depth = Depth { keep: true, ..picture.depth.into() };
+        let target = SceneTarget { colors: vec![picture.radiance.into()], depth, size };
+        let is_other = |variant: &Variant| !is_last(variant);
+        draws::draw(builder, variants, ("screen", &is_other), (clip_from_world, eye, &[]), &target);
     }
 
     /// Draws the bodies as seen from an eye.
@@ -50,24 +63,24 @@ impl Layers {
     ) {
         let radiance = self.footprint.as_ref().map_or(self.samples, |footprint| footprint.radiance);
         let screen = self.screen.map(|(picture, thickness)| {
-            let view = screen::view(builder, clip_from_world, size, thickness);
+            let view = self.whole.unwrap_or_else(|| screen::view(builder, clip_from_world, size, thickness));
             (picture, [(screen::VIEW, Bound::from(view))])
         });
         let view = (clip_from_world, eye, screen.as_ref().map_or(&[][..], |(_, bound)| &bound[..]));
-        // What is drawn over a smoothed stone would keep its shares.
-        let is_last = |variant: &Variant| variant.reads_screen || variant.targets == footprint::FORMATS.len();
         if !variants.iter().any(is_last) {
             let target = SceneTarget { colors: vec![radiance.into()], depth: self.depth.into(), size };
             return draws::draw(builder, variants, ("scene", &|_| true), view, &target);
         }
         let mut is_cleared = true;
         if variants.iter().any(|variant| !is_last(variant)) {
+            // The picture of a whole frame is there already.
+            let screen = screen.as_ref().filter(|_| self.whole.is_none());
             let (target, depth) =
-                screen.as_ref().map_or((radiance, self.depth), |(picture, _)| (picture.radiance, picture.depth));
+                screen.map_or((radiance, self.depth), |(picture, _)| (picture.radiance, picture.depth));
             let depth = Depth { keep: true, ..depth.into() };
             let target = SceneTarget { colors: vec![target.into()], depth, size };
             draws::draw(builder, variants, ("scene", &|variant| !is_last(variant)), view, &target);
-            if let Some((picture, _)) = &screen {
+            if let Some((picture, _)) = screen {
                 picture.copy(builder, radiance, self.depth, size);
             }
             is_cleared = false;
@@ -90,4 +103,9 @@ impl Layers {
             footprint.resolve(builder, self.samples, size);
         }
     }
+}
+
+/// Whether stones are drawn after the other bodies: what is drawn over a smoothed one would keep its shares.
+fn is_last(variant: &Variant) -> bool {
+    variant.reads_screen || variant.targets == footprint::FORMATS.len()
 }

@@ -7,6 +7,7 @@ use super::scene_pass::{ScenePass, scene_pass};
 use crate::error::RenderError;
 use crate::frame::{Builder, Frame};
 use crate::light::lighting::Lighting;
+use crate::light::screen;
 use crate::picture::Tile;
 use crate::picture::display::DisplayPass;
 use crate::settings::{MOST_SAMPLES, Settings};
@@ -63,11 +64,14 @@ impl Drawing {
             None
         };
         let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
-        let layers = Layers::new(builder, &lighting, settings, display.samples, [columns, rows])?;
-        if layers.follows_screen() && Tile::all(width, height, settings.samples).count() > 1 {
-            return Err(RenderError::ScreenTiles { largest: Tile::side(settings.samples) });
-        }
+        let mut layers = Layers::new(builder, &lighting, settings, display.samples, [columns, rows])?;
         pass.prepare(builder);
+        if Tile::all(width, height, settings.samples).count() > 1 {
+            // Rays over the picture would end at the borders of a tile.
+            let matrix = camera::clip_from_world(scene, width, height, Tile { left: 0, top: 0, width, height });
+            let size = [width, height].map(|side| side * screen::samples_of_whole(settings));
+            layers.draw_whole(builder, &pass.variants, (matrix, scene.camera.eye), size);
+        }
         for tile in Tile::all(width, height, settings.samples) {
             let view = (camera::clip_from_world(scene, width, height, tile), scene.camera.eye);
             let size = [tile.width * settings.samples, tile.height * settings.samples];

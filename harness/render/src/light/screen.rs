@@ -13,6 +13,15 @@ pub(crate) const VIEW: u32 = 6;
 pub(crate) const RADIANCE: u32 = 7;
 pub(crate) const DEPTH: u32 = 8;
 
+/// Largest side in samples of the picture of a frame that is drawn in tiles, unless one for each pixel is more: 330 MB of colour
+/// and depth.
+const LARGEST_WHOLE: u32 = 4096;
+
+/// Returns how many samples along each side of a pixel the picture of a whole frame has that is drawn in tiles.
+pub(crate) fn samples_of_whole(settings: &Settings) -> u32 {
+    (LARGEST_WHOLE / settings.width.max(settings.height)).clamp(1, settings.samples)
+}
+
 /// Recipe that draws the picture into the stones' target.
 const COPY: &str = "screen_copy";
 
@@ -67,7 +76,8 @@ pub(crate) fn view(builder: &mut Builder<'_>, clip_from_world: Mat4, size: [u32;
     let axis = fourth.truncate();
     let scale = third.truncate().dot(axis) / axis.length_squared();
     let offset = third.w - scale * fourth.w;
-    let record = Record::new("ScreenView").with("size", UVec2::from(size).as_vec2());
+    let record = Record::new("ScreenView").with("clip_from_world", clip_from_world);
+    let record = record.with("size", UVec2::from(size).as_vec2());
     let record = record.with("scale", scale as f32).with("offset", offset as f32).with("thickness", thickness);
     builder.uniform("screen's view", record)
 }

@@ -17,5 +17,6 @@ mod random_walk;
 mod shadows;
 mod texture_diffusion;
 mod textures;
+mod tiles;
 mod vitrine;
 mod voxelization;
