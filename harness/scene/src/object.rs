@@ -46,7 +46,8 @@ impl Object {
     /// Returns a body that shows `copies`.
     #[must_use]
     pub fn of_copies(name: impl Into<String>, copies: Copies, material: Material) -> Self {
-        Self { name: name.into(), mesh: copies.joined(), material, copies: Some(copies) }
+        let mesh = copies.joined();
+        Self { name: name.into(), mesh, material, copies: Some(copies) }
     }
 
     /// Returns the greatest extent of the body along an axis, or of its first copy, turned upright.

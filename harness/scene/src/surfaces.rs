@@ -49,22 +49,21 @@ pub fn lathe(corners: &[DVec2], radius: f64, columns: u32) -> Mesh {
 /// Returns the places and normals along a line whose inner corners are rounded.
 fn rounded(corners: &[DVec2], radius: f64) -> Vec<(DVec2, DVec2)> {
     const STEPS: u32 = 6;
-    let edge = |from: usize| corners[from + 1] - corners[from];
-    let normal = |from: usize| edge(from).perp().normalize();
-    let last = corners.len() - 2;
-    let mut outline = vec![(corners[0], normal(0))];
-    for corner in 1..=last {
-        let at = corners[corner];
-        let (before, after) = (edge(corner - 1), edge(corner));
+    let normal = |edge: DVec2| edge.perp().normalize();
+    let mut outline = vec![(corners[0], normal(corners[1] - corners[0]))];
+    for corner in corners.windows(3) {
+        let [from, at, to] = [corner[0], corner[1], corner[2]];
+        let (before, after) = (at - from, to - at);
         let reach = radius.min(0.5 * before.length()).min(0.5 * after.length());
         let (start, end) = (at - reach * before.normalize(), at + reach * after.normalize());
         for step in 0..=STEPS {
             let share = f64::from(step) / f64::from(STEPS);
             let place = start.lerp(at, share).lerp(at.lerp(end, share), share);
-            outline.push((place, normal(corner - 1).lerp(normal(corner), share).normalize()));
+            outline.push((place, normal(before).lerp(normal(after), share).normalize()));
         }
     }
-    outline.push((corners[last + 1], normal(last)));
+    let [before, end] = [corners[corners.len() - 2], corners[corners.len() - 1]];
+    outline.push((end, normal(end - before)));
     outline
 }
 

@@ -274,8 +274,10 @@ fn averagings_change_the_normals_alone() {
 
 #[test]
 fn built_in_cameras_frame_their_stones_tightly() {
-    // The vitrine's camera is set by hand and has its own test; the head's shows the face alone.
-    for built_in in BUILT_IN.iter().filter(|built_in| !["vitrine", "head", "skin_head"].contains(&built_in.name)) {
+    // The vitrine's camera is set by hand and has its own test; the head's shows the face alone, and the tumbler's table reaches
+    // beyond the picture.
+    let others = ["vitrine", "head", "skin_head", "tumbler"];
+    for built_in in BUILT_IN.iter().filter(|built_in| !others.contains(&built_in.name)) {
         let scene = Scene::named(built_in.name).unwrap();
         let camera = scene.camera;
         let forward = (camera.target - camera.eye).normalize();

@@ -25,9 +25,10 @@ pub(super) struct Asked {
         help = format!("How much of the light's way is followed, for all objects or one node's, and several times for several: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
     rung: Vec<(Option<String>, Rung)>,
-    /// Material of a node's body, or of all, in place of the scene's, fitted to the body's size; several
-    /// times for several. `cook list --materials` names them.
-    #[arg(long, value_name = "[NODE=]PRESET", value_parser = parse_material)]
+    /// Material in place of the scene's, fitted to the body's size: of all bodies, or of those that WHICH names: their node, their
+    /// material, the number of one without a name, or a pattern of either name, with * and ?, such as 'Gem*=diamond'. Several times for
+    /// several. `cook list --materials` names them.
+    #[arg(long, value_name = "[WHICH=]PRESET", value_parser = parse_material)]
     material: Vec<(Option<String>, &'static Preset)>,
     /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
@@ -95,14 +96,14 @@ impl Asked {
     pub(super) fn open(&self) -> Result<Scene, Failure> {
         let mut scene = Scene::open(&self.scene)?;
         refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
+        // By the names that the file gives: a preset has one of its own.
+        let names = Names::of(&scene);
         // Those of single nodes come last, so that they count.
         let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
         for (node, preset) in all.into_iter().chain(single) {
-            if let Some(node) = node {
-                refuse_unknown(&scene, node, "--material")?;
-            }
-            for object in &mut scene.objects {
-                if node.as_ref().is_none_or(|node| *node == object.name) {
+            let which = node.as_ref().map(|which| named_bodies(&names, which, "--material")).transpose()?;
+            for (number, object) in scene.objects.iter_mut().enumerate() {
+                if which.as_ref().is_none_or(|which| which[number]) {
                     *object = preset.on(object);
                 }
             }
@@ -282,6 +283,60 @@ fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) 
     Ok(())
 }
 
+/// What bodies are named by.
+struct Names {
+    scene: String,
+    nodes: Vec<String>,
+    materials: Vec<String>,
+}
+
+impl Names {
+    fn of(scene: &Scene) -> Self {
+        let of = |name: fn(&Object) -> &String| scene.objects.iter().map(|object| name(object).clone()).collect();
+        Self {
+            scene: scene.name.clone(),
+            nodes: of(|object| &object.name),
+            materials: of(|object| &object.material.name),
+        }
+    }
+}
+
+/// Returns which bodies are meant: those whose node has this name, or else whose material has it, or else, if it has no name, the number, or else those of
+/// which either name follows the pattern. Refuses what names none.
+fn named_bodies(names: &Names, which: &str, option: &str) -> Result<Vec<bool>, Failure> {
+    let by = |names: &[String], is_meant: &dyn Fn(&str) -> bool| names.iter().map(|name| is_meant(name)).collect();
+    let is_it = |name: &str| name == which;
+    // What the loader calls a material without a name.
+    let numbered = format!("material {which}");
+    let has_number = |name: &str| name == numbered;
+    let pattern = wildmatch::WildMatch::new(which);
+    let follows = |name: &str| which.contains(['*', '?']) && pattern.matches(name);
+    let by_pattern = || {
+        let [nodes, materials]: [Vec<bool>; 2] = [&names.nodes, &names.materials].map(|names| by(names, &follows));
+        nodes.into_iter().zip(materials).map(|(node, material)| node || material).collect()
+    };
+    let ways: [&dyn Fn() -> Vec<bool>; 4] = [
+        &|| by(&names.nodes, &is_it),
+        &|| by(&names.materials, &is_it),
+        &|| by(&names.materials, &has_number),
+        &by_pattern,
+    ];
+    let found = ways.into_iter().map(|way| way()).find(|meant| meant.contains(&true));
+    found.ok_or_else(|| {
+        let mut known: Vec<&str> = Vec::new();
+        for name in names.nodes.iter().chain(&names.materials) {
+            if !known.contains(&name.as_str()) {
+                known.push(name);
+            }
+        }
+        let scene = &names.scene;
+        Failure(format!(
+            "scene `{scene}` has no node or material `{which}` for {option}{}",
+            nearest::suggest(which, &known)
+        ))
+    })
+}
+
 /// Refuses a node that no object comes from.
 fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
     let mut known: Vec<&str> = Vec::new();
@@ -313,4 +368,28 @@ pub(super) fn refuse_without_meaning(
     let reason = decision.map_or("it has no object", |decision| &decision.reason);
     let (scene, rung) = (&scene.name, settings.rung);
     Err(Failure(format!("scene `{scene}` by rung `{rung}`: {option} has no meaning: {reason}; leave it out")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_are_named_by_node_material_number_or_pattern() {
+        let text = |names: [&str; 4]| names.map(str::to_owned).to_vec();
+        let names = Names {
+            scene: "ring".to_owned(),
+            nodes: text(["band", "Gem.001", "Gem.002", "stone"]),
+            materials: text(["gold", "material 2", "material 2", "Gem ruby"]),
+        };
+        let found = |which| named_bodies(&names, which, "--material").ok();
+        assert_eq!(found("band"), Some(vec![true, false, false, false]));
+        assert_eq!(found("Gem ruby"), Some(vec![false, false, false, true]));
+        assert_eq!(found("2"), Some(vec![false, true, true, false]));
+        assert_eq!(found("Gem*"), Some(vec![false, true, true, true]));
+        assert_eq!(found("?old"), Some(vec![true, false, false, false]));
+        assert_eq!((found("gem*"), found("3"), found("bands")), (None, None, None));
+        let message = named_bodies(&names, "Gem rubi", "--material").expect_err("none").0;
+        assert!(message.contains("no node or material `Gem rubi`") && message.contains("`Gem ruby`"), "{message}");
+    }
 }

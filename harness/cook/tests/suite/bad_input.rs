@@ -39,7 +39,11 @@ const RENDER: &[Row] = &[
         &["--rung proxy-1", "--quality best", "leave one out"],
     ),
     ("octahedron --material rubi --out {}/out.png", One, &["--material", "did you mean `ruby`?"]),
-    ("octahedron --material gem=ruby --out {}/out.png", One, &["no node `gem` for --material", "octahedron"]),
+    (
+        "octahedron --material gem=ruby --out {}/out.png",
+        One,
+        &["no node or material `gem` for --material", "octahedron"],
+    ),
     ("octahedron --rung gem=walk-8 --out {}/out.png", One, &["no node `gem` for --rung", "octahedron"]),
     ("octahedron --rung octahedron=walk --out {}/out.png", One, &["--rung", "a rung is"]),
     ("octahedron --rung walk-2 --rung walk-4 --out {}/out.png", One, &["--rung names all objects twice"]),
@@ -122,12 +126,6 @@ const RENDER: &[Row] = &[
     ("tray --thickness 1 --out {}/out.png", One, &["--thickness", "--outside screen"]),
     ("tray --outside bodies --thickness 1 --out {}/out.png", One, &["--thickness", "--outside screen"]),
     ("tray --outside screen --thickness 0 --out {}/out.png", One, &["--thickness", "above 0"]),
-    (
-        "tray --outside screen --size 600x400 --out {}/out.png",
-        One,
-        &["--outside screen", "512x512", "--outside bodies"],
-    ),
-    ("tray --outside screen --samples 8 --out {}/out.png", One, &["--outside screen", "256x256", "fewer --samples"]),
     ("brilliant --deferred --footprint --out {}/out.png", One, &["--deferred", "--footprint"]),
     (
         "ruby --rung reference --without absorption --out {}/out.png",

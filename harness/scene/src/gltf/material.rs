@@ -151,9 +151,6 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     let mut material = surface(json)?;
 
     let ior = Extension::of(all, "KHR_materials_ior")?.number("ior")?;
-    if let Some(ior) = ior {
-        material.ior = index(ior)?;
-    }
     material.transmission =
         Extension::of(all, "KHR_materials_transmission")?.share("transmissionFactor")?.unwrap_or(0.0);
     let diffuse = Extension::of(all, "KHR_materials_diffuse_transmission")?;
@@ -163,6 +160,10 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     }
     volume(Extension::of(all, "KHR_materials_volume")?, &mut material)?;
 
+    if let Some(ior) = ior {
+        let is_clear = material.transmission > 0.0;
+        material.ior = if is_clear || ior < 0.0 { index(ior)? } else { nearest_index(ior) };
+    }
     let dispersion = Extension::of(all, "KHR_materials_dispersion")?.number("dispersion")?;
     if let Some(dispersion) = dispersion {
         let single = dispersion as f32;
@@ -252,6 +253,12 @@ fn exclusive(all: Option<&Map<String, Value>>) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Returns the index nearest to that of a body through which no light goes straight: there it concerns reflection alone. glTF's 0
+/// stands for a surface that reflects all light.
+pub(super) fn nearest_index(ior: f64) -> f32 {
+    if ior == 0.0 { Material::LARGEST_INDEX } else { (ior as f32).clamp(1.0, Material::LARGEST_INDEX) }
 }
 
 fn index(ior: f64) -> Result<f32, String> {

@@ -1,5 +1,7 @@
 //! Conversion of a mesh's primitives to objects in world space.
 
+use std::collections::HashMap;
+
 use ::gltf::Semantic;
 use ::gltf::json::Root;
 use ::gltf::json::mesh::{Mode, Primitive};
@@ -23,8 +25,8 @@ use crate::{Mesh, Object};
 /// any device holds in one buffer (WebGPU guarantees 128 MiB).
 const MOST_JOINED: usize = 1 << 22;
 
-/// Adds an object for each triangle primitive that `node` shows. All instances of a primitive form
-/// one mesh, or several if one would be too large for a device.
+/// Adds an object for each material of the triangle primitives that `node` shows: exporters part one body's triangles over
+/// several. All instances of a primitive form one mesh, or several if one would be too large for a device.
 pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
@@ -42,6 +44,10 @@ pub(super) fn add_objects(
     let name = name.map_or_else(|| format!("mesh {mesh_index}"), |name| excerpt(&name));
     let instances = Instances::of(root, buffers, node)?;
     let enlargement = instances.enlargement();
+    // Each with the number of its first primitive.
+    let mut found: Vec<(usize, Object)> = Vec::new();
+    // The last of each material, with texture coordinates or without.
+    let mut of_kind = HashMap::new();
     for (index, primitive) in mesh.primitives.iter().enumerate() {
         let Some(arrangement) = Arrangement::of(primitive.mode) else {
             budget.pass_over()?;
@@ -58,18 +64,33 @@ pub(super) fn add_objects(
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
             material.thickness = thickness.min(f32::MAX);
         }
-        let name = match mesh.primitives.len() {
-            1 => name.clone(),
-            _ => format!("{name} / {index}"),
-        };
-        objects.extend(meshes_in_world.into_iter().map(|(mesh, copies)| Object {
-            name: name.clone(),
-            mesh,
-            material: material.clone(),
-            copies,
-        }));
+        for (mesh, copies) in meshes_in_world {
+            let material = material.clone();
+            let object = Object { name: name.clone(), mesh, material, copies };
+            let kind = (material_index, object.mesh.uvs.is_empty());
+            let other = of_kind.get(&kind).map(|place: &usize| &mut found[*place]);
+            match other.filter(|(first, other)| *first != index && are_one(other, &object)) {
+                Some((_, other)) => other.mesh.append(&object.mesh),
+                None => {
+                    of_kind.insert(kind, found.len());
+                    found.push((index, object));
+                }
+            }
+        }
     }
+    let are_parts = found.iter().any(|(index, _)| Some(index) != found.first().map(|(first, _)| first));
+    objects.extend(found.into_iter().map(|(index, object)| {
+        let name = if are_parts { format!("{name} / {index}") } else { object.name };
+        Object { name, ..object }
+    }));
     Ok(())
+}
+
+/// Whether two primitives of a mesh and of one material are one body: they are shown once, and together not too large.
+fn are_one(one: &Object, other: &Object) -> bool {
+    let size = |mesh: &Mesh| mesh.positions.len().max(mesh.indices.len());
+    let fits = size(&one.mesh) + size(&other.mesh) <= MOST_JOINED;
+    fits && one.copies.is_none() && other.copies.is_none()
 }
 
 /// How a list of vertices forms triangles.

@@ -11,9 +11,10 @@ use ::gltf::json::validation::Checked;
 use serde_json::{Map, Value};
 
 use super::error::excerpt;
+use super::extension::Extension;
 use super::lacking::{Lacking, User};
 use super::limits::KNOWN_EXTENSIONS;
-use super::material::{Known, Materials, extensions};
+use super::material::{Known, Materials, extensions, nearest_index};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
 use super::{extras, instances, light_node};
@@ -169,6 +170,13 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
     let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
+    }
+    let ior = Extension::of(extensions(json), "KHR_materials_ior").and_then(|ior| ior.number("ior")).ok().flatten();
+    if let Some(ior) =
+        ior.filter(|ior| material.transmission == 0.0 && !(1.0..=f64::from(Material::LARGEST_INDEX)).contains(ior))
+    {
+        let instead = if nearest_index(ior) == 1.0 { "drawn as 1" } else { "drawn as 4" };
+        lacking.note("index of refraction", format!("`ior` {ior:?}"), instead, user);
     }
     if json.emissive_factor.0.iter().any(|part| *part != 0.0) {
         lacking.note("emission", "`emissiveFactor`".to_owned(), "nothing shines by itself", user);

@@ -77,6 +77,44 @@ fn a_triangle_loads_with_names_and_computed_normals() {
     assert_eq!(mesh.indices, [0, 1, 2]);
 }
 
+/// Primitives of one material are one body, which has the node's name if it is the only one.
+#[test]
+fn primitives_of_one_material_are_one_body() {
+    let primitive = |material: usize| json!({"attributes": {"POSITION": 0}, "indices": 1, "material": material});
+    let load = |materials: &[usize]| {
+        let primitives: Vec<Value> = materials.iter().map(|material| primitive(*material)).collect();
+        let scene = load_changed(|d| {
+            d["materials"] = json!([{"name": "gem"}, {"name": "gold"}]);
+            d["meshes"][0]["primitives"] = primitives.into();
+        });
+        let objects = scene.expect("a scene").objects;
+        let of = |object: &Object| (object.name.clone(), object.material.name.clone(), object.mesh.triangle_count());
+        objects.iter().map(of).collect::<Vec<_>>()
+    };
+    let body = |name: &str, material: &str, triangles| (name.to_owned(), material.to_owned(), triangles);
+    assert_eq!(load(&[0, 0, 0]), [body("stone", "gem", 3)]);
+    assert_eq!(load(&[0, 1, 0]), [body("stone / 0", "gem", 2), body("stone / 1", "gold", 1)]);
+}
+
+/// An index of refraction beyond those of clear bodies concerns only what other bodies reflect.
+#[test]
+fn opaque_bodies_have_the_nearest_index() {
+    for (ior, drawn, says) in [(0.0, 4.0, "drawn as 4"), (0.5, 1.0, "drawn as 1"), (1000.0, 4.0, "drawn as 4")] {
+        let scene = load_changed(|d| {
+            d["meshes"][0]["primitives"][0]["material"] = json!(0);
+            d["materials"][0] = json!({
+                "name": "gem",
+                "pbrMetallicRoughness": {"metallicFactor": 0},
+                "extensions": {"KHR_materials_ior": {"ior": ior}},
+            });
+        });
+        let scene = scene.expect("a scene");
+        assert_eq!(scene.objects[0].material.ior, drawn);
+        let clause = format!("index of refraction: `ior` {ior:?} of material `gem` ({says})");
+        assert_eq!(scene.lacking, [clause]);
+    }
+}
+
 #[test]
 fn buffers_may_be_base64_or_files_beside() {
     use base64::Engine;
@@ -293,8 +331,7 @@ fn a_material_with_large_extras_is_read_once() {
         d["materials"][0]["extras"] = json!({"numbers": extras, "lapidary": {"sellmeier": "quartz"}});
     });
     let scene = scene.unwrap();
-    assert_eq!(scene.objects.len(), 1_000);
-    assert!(scene.objects.iter().all(|object| object.material == scene.objects[0].material));
+    assert_eq!((scene.objects.len(), only_mesh(&scene).triangle_count()), (1, 1_000));
     assert_eq!(scene.objects[0].material.ior, Mineral::Quartz.index());
 }
 

@@ -174,7 +174,8 @@ mod tests {
 
     #[test]
     fn cut_stones_stay_cut_and_round_bodies_smooth() {
-        let cut = crate::BUILT_IN.iter().filter(|built_in| built_in.name != "bunny_stone");
+        let round = ["bunny_stone", "tumbler"];
+        let cut = crate::BUILT_IN.iter().filter(|built_in| !round.contains(&built_in.name));
         for scene in cut.map(|built_in| Scene::open(built_in.name).expect(built_in.name)) {
             for object in scene.objects.iter().filter(|object| object.material.is_clear()) {
                 let mut mesh = object.shape().clone();

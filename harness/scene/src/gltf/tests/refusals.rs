@@ -226,7 +226,8 @@ fn materials_and_cameras_out_of_range() {
     ] {
         let message = message(|d| {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
-            d["materials"][0]["extensions"] = json!({"KHR_materials_ior": {"ior": ior}});
+            d["materials"][0]["extensions"] =
+                json!({"KHR_materials_ior": {"ior": ior}, "KHR_materials_transmission": {"transmissionFactor": 1}});
         });
         assert!(message.starts_with("material 0 \"gem\": ") && message.contains(says), "{message}");
     }
