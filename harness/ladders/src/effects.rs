@@ -240,7 +240,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         Case {
             name: "wax in a glass ball with images, a sun",
             scene: painted_glass()?,
-            settings: settings("scene-16"),
+            settings: Settings { half_space: true, ..settings("scene-16") },
             effects: &[
                 Effect::Nested,
                 Effect::Around,
