@@ -113,9 +113,7 @@ fn in_glass() -> Result<Scene, CostError> {
 
 /// Returns a ball of glass, whose images are those of the head, with wax inside.
 fn painted_glass() -> Result<Scene, CostError> {
-    let [head, wax] = [one("head")?, one("wax")?].map(|scene| scene.objects.into_iter().next());
-    let (Some(head), Some(wax)) = (head, wax) else { return one("ruby") };
-    let images = head.material;
+    let [images, wax] = [one("head")?, one("wax")?].map(|mut scene| scene.objects.remove(0).material);
     let material = Material {
         ior: 1.5,
         transmission: 1.0,
@@ -128,7 +126,7 @@ fn painted_glass() -> Result<Scene, CostError> {
     };
     let mut mesh = sphere(1.0, 48);
     mesh.colors = vec![Vec3::ONE; mesh.positions.len()];
-    let within = Object::new("wax", sphere(0.5, 48), wax.material);
+    let within = Object::new("wax", sphere(0.5, 48), wax);
     Ok(Scene { objects: vec![Object::new("glass", mesh, material), within], ..sunlit("brilliant")? })
 }
 

@@ -1,5 +1,6 @@
 //! Which bodies share space, and which are seen through one another.
 
+use crate::Effect;
 use crate::casting::bounds;
 use crate::remembered::Remembered;
 use glam::{Mat4, Vec2, Vec3};
@@ -139,8 +140,8 @@ pub(crate) fn copies_overlap(object: &Object, scene: &Scene, size: [u32; 2]) -> 
     places.sort_by(|one, other| one.0.x.total_cmp(&other.0.x));
     let beside = |number: usize| {
         let (least, most) = places[number];
-        let next = places[number + 1..].iter().take_while(move |other| other.0.x < most.x);
-        next.clone().any(|other| other.0.y < most.y && least.y < other.1.y)
+        let mut next = places[number + 1..].iter().take_while(|other| other.0.x < most.x);
+        next.any(|other| other.0.y < most.y && least.y < other.1.y)
     };
     (0..places.len()).any(beside)
 }
@@ -193,10 +194,16 @@ pub(crate) fn is_sheer(object: &Object) -> bool {
     !object.material.is_clear() && !object.material.covers_all()
 }
 
+/// The images that light through clear bodies meets, each with its effect.
+pub const IMAGES_MET: [(Effect, TextureSlot); 3] = [
+    (Effect::BaseColorTexture, TextureSlot::BaseColor),
+    (Effect::NormalTexture, TextureSlot::Normal),
+    (Effect::TransmissionTexture, TextureSlot::Transmission),
+];
+
 /// Whether a body's surface varies by the image in a slot.
 pub(crate) fn shows(object: &Object, slot: TextureSlot) -> bool {
-    let Object { mesh, material, .. } = object;
-    material.texture(slot).is_some() && material.calls_for(slot) && !mesh.uvs.is_empty()
+    object.material.effective(slot).is_some() && !object.mesh.uvs.is_empty()
 }
 
 /// Whether a share of the light does not enter a clear body, somewhere.

@@ -7,7 +7,7 @@ use super::quality::Technique;
 use super::thickness::Thickness;
 use crate::request::Scattering;
 use crate::{Quality, Request, Rung};
-use lapidary_scene::{Object, Scene, Shape, TextureSlot};
+use lapidary_scene::{Object, Scene, Shape};
 
 /// Triangles of a scene up to which copies are drawn as bodies of their own: of more, the corners are beyond a buffer that every
 /// device offers.
@@ -71,12 +71,9 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if has(Effect::PartialTransmission) && among::is_partly_clear(object) {
         return Some("a share of the light does not enter".to_owned());
     }
-    let images = [
-        (Effect::BaseColorTexture, TextureSlot::BaseColor),
-        (Effect::NormalTexture, TextureSlot::Normal),
-        (Effect::TransmissionTexture, TextureSlot::Transmission),
-    ];
-    if let Some((_, slot)) = images.into_iter().find(|(effect, slot)| has(*effect) && among::shows(object, *slot)) {
+    if let Some((_, slot)) =
+        among::IMAGES_MET.into_iter().find(|(effect, slot)| has(*effect) && among::shows(object, *slot))
+    {
         return Some(format!("it has a {}", slot.name()));
     }
     if has(Effect::VertexColor) && !object.mesh.colors.is_empty() {

@@ -34,7 +34,7 @@ mod request;
 mod rung;
 pub mod thickness;
 
-pub use among::is_smooth;
+pub use among::{IMAGES_MET, is_smooth};
 pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use note::{Gravity, Note, Objects};

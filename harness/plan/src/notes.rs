@@ -108,8 +108,7 @@ impl Case<'_> {
 
     /// Returns a note if a scattering body looks simpler through clear ones than by itself.
     fn simpler_through_others(&self, objects: &Objects) -> Option<Note> {
-        let Object { mesh, material, .. } = self.object;
-        let has = |slot| material.texture(slot).is_some() && material.calls_for(slot) && !mesh.uvs.is_empty();
+        let (material, has) = (&self.object.material, |slot| among::shows(self.object, slot));
         let is_through = matches!(self.rung, Rung::OpticalPath(_) | Rung::Diffusion(_));
         let varies = has(TextureSlot::Thickness) || has(TextureSlot::DiffuseTransmission);
         let is_simpler = is_through || varies || material.share_that_enters() < 1.0;
@@ -155,9 +154,7 @@ impl Case<'_> {
             (TextureSlot::Transmission, is_followed),
             (TextureSlot::DiffuseTransmission, spreads || !material.scatters()),
         ];
-        let lost = |(slot, drawn): &(TextureSlot, bool)| {
-            !drawn && material.texture(*slot).is_some() && material.calls_for(*slot)
-        };
+        let lost = |(slot, drawn): &(TextureSlot, bool)| !drawn && material.effective(*slot).is_some();
         let colors = (!draws && !mesh.colors.is_empty()).then_some("COLOR_0");
         let draws_alpha = self.rung.draws_images() || is_matte;
         let alpha = (!draws_alpha && !material.covers_all()).then_some("alphaMode");

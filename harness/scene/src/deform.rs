@@ -72,7 +72,7 @@ pub fn merging(time: f64) -> Mesh {
         mesh.append(&revolved([ends[0], on_axis(centres[0], middle)], field));
         mesh.append(&revolved([on_axis(centres[1], middle), ends[1]], field));
     }
-    Mesh { uvs: Vec::new(), ..mesh }
+    mesh.without_uvs()
 }
 
 /// Returns the place between `inside`, where `value` is negative, and `outside` where it is 0.

@@ -238,6 +238,12 @@ impl Material {
         }
     }
 
+    /// Returns the texture in a slot if it has an effect: its factor is other than 0.
+    #[must_use]
+    pub fn effective(&self, slot: TextureSlot) -> Option<&Texture> {
+        self.texture(slot).filter(|_| self.calls_for(slot))
+    }
+
     /// Returns the place of the texture in a slot.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> &mut Option<Texture> {
         match slot {

@@ -71,6 +71,12 @@ impl Mesh {
         Self { positions: self.positions.iter().map(|position| factor * *position).collect(), ..self.clone() }
     }
 
+    /// Returns the mesh without texture coordinates.
+    #[must_use]
+    pub fn without_uvs(self) -> Self {
+        Self { uvs: Vec::new(), ..self }
+    }
+
     /// Returns the mesh without `halo` and without the vertices that only the halo uses.
     #[must_use]
     pub fn without_halo(&self) -> Self {

@@ -301,35 +301,27 @@ impl Names {
     }
 }
 
-/// Returns which bodies are meant: those whose node has this name, or else whose material has it, or else, if it has no name, the number, or else those of
-/// which either name follows the pattern. Refuses what names none.
-fn named_bodies(names: &Names, which: &str, option: &str) -> Result<Vec<bool>, Failure> {
-    let by = |names: &[String], is_meant: &dyn Fn(&str) -> bool| names.iter().map(|name| is_meant(name)).collect();
-    let is_it = |name: &str| name == which;
+/// Whether a body is meant, by the names of its node and of its material.
+type IsMeant<'a> = &'a dyn Fn(&str, &str) -> bool;
+
+/// Returns which bodies are meant: those whose node has this name, or else whose material has it, or else, if it has no name, the
+/// number, or else those of which either name follows the pattern. Refuses what names none.
+fn named_bodies(Names { scene, nodes, materials }: &Names, which: &str, option: &str) -> Result<Vec<bool>, Failure> {
     // What the loader calls a material without a name.
     let numbered = format!("material {which}");
-    let has_number = |name: &str| name == numbered;
     let pattern = wildmatch::WildMatch::new(which);
     let follows = |name: &str| which.contains(['*', '?']) && pattern.matches(name);
-    let by_pattern = || {
-        let [nodes, materials]: [Vec<bool>; 2] = [&names.nodes, &names.materials].map(|names| by(names, &follows));
-        nodes.into_iter().zip(materials).map(|(node, material)| node || material).collect()
-    };
-    let ways: [&dyn Fn() -> Vec<bool>; 4] = [
-        &|| by(&names.nodes, &is_it),
-        &|| by(&names.materials, &is_it),
-        &|| by(&names.materials, &has_number),
-        &by_pattern,
+    let ways: [IsMeant<'_>; 4] = [
+        &|node, _| node == which,
+        &|_, material| material == which,
+        &|_, material| material == numbered,
+        &|node, material| follows(node) || follows(material),
     ];
-    let found = ways.into_iter().map(|way| way()).find(|meant| meant.contains(&true));
-    found.ok_or_else(|| {
-        let mut known: Vec<&str> = Vec::new();
-        for name in names.nodes.iter().chain(&names.materials) {
-            if !known.contains(&name.as_str()) {
-                known.push(name);
-            }
-        }
-        let scene = &names.scene;
+    let meant = |is_meant: IsMeant<'_>| -> Vec<bool> {
+        nodes.iter().zip(materials).map(|(node, material)| is_meant(node, material)).collect()
+    };
+    ways.into_iter().map(meant).find(|meant| meant.contains(&true)).ok_or_else(|| {
+        let known = distinct(nodes.iter().chain(materials));
         Failure(format!(
             "scene `{scene}` has no node or material `{which}` for {option}{}",
             nearest::suggest(which, &known)
@@ -337,14 +329,20 @@ fn named_bodies(names: &Names, which: &str, option: &str) -> Result<Vec<bool>, F
     })
 }
 
-/// Refuses a node that no object comes from.
-fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
+/// Returns each name once, in the order of the first.
+fn distinct<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     let mut known: Vec<&str> = Vec::new();
-    for object in &scene.objects {
-        if !known.contains(&object.name.as_str()) {
-            known.push(&object.name);
+    for name in names {
+        if !known.contains(&name.as_str()) {
+            known.push(name);
         }
     }
+    known
+}
+
+/// Refuses a node that no object comes from.
+fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
+    let known = distinct(scene.objects.iter().map(|object| &object.name));
     if known.contains(&node) {
         return Ok(());
     }

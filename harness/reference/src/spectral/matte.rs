@@ -3,7 +3,7 @@
 
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
-use super::paint::{Paint, Painted};
+use super::paint::{Paint, Painted, is_partly_clear};
 use glam::DVec3;
 use lapidary_scene::harmonics::{self, COUNT};
 use lapidary_scene::{Environment, Light, Object, Scene, light};
@@ -86,8 +86,7 @@ impl Mattes {
 /// Whether a surface is matte, for a share of the light at least, somewhere.
 fn is_matte(object: &Object) -> bool {
     let material = &object.material;
-    let by_image = || Paint::of(object).is_some_and(|paint| paint.is_partly_clear());
-    if material.is_opaque() { material.covered_share() > 0.0 } else { material.clear_share() < 1.0 || by_image() }
+    if material.is_opaque() { material.covered_share() > 0.0 } else { is_partly_clear(object) }
 }
 
 impl Matte {

@@ -47,7 +47,7 @@ use lapidary_scene::spectrum::{self, Wavelength};
 use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Light, Object, SAMPLES, Scene};
 use matte::Mattes;
-use paint::{Paint, Painted};
+use paint::{Painted, is_partly_clear};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Primary, Surface, Surroundings};
@@ -415,14 +415,13 @@ fn lights(scene: &Scene) -> Vec<(Light, f64)> {
 /// Returns the properties of a body's surface.
 fn surface(object: &Object) -> Surface {
     let material = &object.material;
-    let painted = Painted::of(material);
     Surface {
         // What an opaque body does not cover, goes straight on, as through a thin wall of index 1.
         is_thin: material.is_opaque() || material.is_thin_wall(),
         is_opaque: material.is_opaque(),
         alpha: f64::from(material.facet_slope()),
-        painted,
-        is_partly_clear: painted.clear < 1.0 || Paint::of(object).is_some_and(|paint| paint.is_partly_clear()),
+        painted: Painted::of(material),
+        is_partly_clear: is_partly_clear(object),
     }
 }
 

@@ -34,6 +34,12 @@ impl Painted {
     }
 }
 
+/// Whether a share of the light does not enter a clear body, or passes an opaque one, somewhere.
+pub(super) fn is_partly_clear(Object { mesh, material, .. }: &Object) -> bool {
+    let by_image = !mesh.uvs.is_empty() && material.effective(TextureSlot::Transmission).is_some();
+    if material.is_opaque() { !material.covers_all() } else { material.clear_share() < 1.0 || by_image }
+}
+
 impl Paint {
     /// Returns `None` for a body that is the same all over.
     pub(super) fn of(object: &Object) -> Option<Self> {
@@ -50,23 +56,11 @@ impl Paint {
         Some(Self { material: material.clone(), faces: faces(&mesh), uvs, colors })
     }
 
-    /// Whether a share of the light, which varies from point to point, does not enter the body, or passes it.
-    pub(super) fn is_partly_clear(&self) -> bool {
-        let material = &self.material;
-        let by_image = !self.uvs.is_empty() && self.image(TextureSlot::Transmission).is_some();
-        if material.is_opaque() { !material.covers_all() } else { by_image }
-    }
-
-    /// Returns the texture in a slot, if it has an effect.
-    fn image(&self, slot: TextureSlot) -> Option<&lapidary_scene::Texture> {
-        self.material.texture(slot).filter(|_| self.material.calls_for(slot))
-    }
-
     /// Returns a texture's value at a point of a face; 1 in all channels if there is none.
     fn texel(&self, slot: TextureSlot, face: usize, weights: DVec3) -> Option<Vec4> {
         let [a, b, c] = self.uvs.get(face)?.map(|uv| uv.as_dvec2());
         let uv = weights.x * a + weights.y * b + weights.z * c;
-        Some(self.image(slot)?.at(uv.as_vec2()))
+        Some(self.material.effective(slot)?.at(uv.as_vec2()))
     }
 
     /// Returns what the body has at a point of a face.
@@ -93,7 +87,7 @@ impl Paint {
     pub(super) fn bent(&self, Place { face, .. }: Place, point: DVec3, normal: DVec3) -> DVec3 {
         let Some(of_face) = self.faces.get(face) else { return normal };
         let Some(texel) = self.texel(TextureSlot::Normal, face, of_face.weights(point)) else { return normal };
-        let Some(texture) = self.image(TextureSlot::Normal) else { return normal };
+        let Some(texture) = self.material.effective(TextureSlot::Normal) else { return normal };
         let scale = f64::from(self.material.normal_scale);
         let tilt = (2.0 * texel.truncate().as_dvec3() - 1.0) * DVec3::new(scale, scale, 1.0);
         let tilt = tilt.try_normalize().unwrap_or(DVec3::Z);

@@ -66,10 +66,9 @@ impl Drawing {
         let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
         let mut layers = Layers::new(builder, &lighting, settings, display.samples, [columns, rows])?;
         pass.prepare(builder);
-        if Tile::all(width, height, settings.samples).count() > 1 {
+        if let Some(size) = screen::size_of_whole(settings) {
             // Rays over the picture would end at the borders of a tile.
-            let matrix = camera::clip_from_world(scene, width, height, Tile { left: 0, top: 0, width, height });
-            let size = [width, height].map(|side| side * screen::samples_of_whole(settings));
+            let matrix = lapidary_scene::clip_from_world(scene, width, height);
             layers.draw_whole(builder, &pass.variants, (matrix, scene.camera.eye), size);
         }
         for tile in Tile::all(width, height, settings.samples) {

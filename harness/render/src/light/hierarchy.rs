@@ -190,7 +190,6 @@ impl Bodies {
             let corners = normals.zip(curvatures.into_iter().chain(std::iter::repeat(0.0)));
             let corners = corners.map(|(normal, curvature)| normal.extend(curvature));
             all.normals.extend(corners.take(object.mesh.positions.len()));
-            let vertices = all.positions.len();
             if object.material.textures().next().is_some() && !object.mesh.uvs.is_empty() {
                 all.uvs.resize(offset as usize, Vec2::ZERO);
                 all.uvs.extend(&object.mesh.uvs);
@@ -199,7 +198,6 @@ impl Bodies {
                 all.colors.resize(offset as usize, Vec3::ONE);
                 all.colors.extend(&object.mesh.colors);
             }
-            debug_assert!(all.uvs.len() <= vertices && all.colors.len() <= vertices);
             all.indices.extend(object.mesh.indices.iter().map(|index| offset + index));
             all.add(number, object, first);
         }
@@ -231,11 +229,14 @@ fn record(material: &Material, colors: &[Vec3]) -> Record {
     let record = Record::new("SceneBody").with("base_color", color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
     let record = record.with("alpha", material.facet_slope()).with("clear", clear);
-    let scatters = material.scatters();
-    let free_path = thickness::free_path(material).filter(|_| scatters).unwrap_or_default();
-    // Light that is neither scattered nor absorbed has no mean free path; beyond any body's size, it drifts no farther.
-    let free_path = free_path.map(|length| if length.is_finite() { length } else { 0.0 });
-    record.with("free_path", free_path).within("law", |record| ScatteringLaw::matched(material).fill(record))
+    let (mut free_path, mut law) = (Vec3::ZERO, ScatteringLaw::default());
+    if material.scatters() {
+        // Light that is neither scattered nor absorbed has no mean free path, and does not drift.
+        let finite = |length: f32| if length.is_finite() { length } else { 0.0 };
+        free_path = thickness::free_path(material).unwrap_or_default().map(finite);
+        law = ScatteringLaw::matched(material);
+    }
+    record.with("free_path", free_path).within("law", |record| law.fill(record))
 }
 
 /// Returns the bodies around the eye, as the recipe's rays know them: the first four.

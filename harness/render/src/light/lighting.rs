@@ -10,7 +10,6 @@ use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::objects::mesh_buffers::Shapes;
-use crate::picture::Tile;
 use crate::settings::Settings;
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_plan::Effect;
@@ -74,12 +73,7 @@ impl<'a> Lighting<'a> {
         if let Some(known) = self.screen.get() {
             return Ok(*known);
         }
-        let Settings { width, height, samples, .. } = *self.settings;
-        let size = if Tile::all(width, height, samples).count() > 1 {
-            [width, height].map(|side| side * screen::samples_of_whole(self.settings))
-        } else {
-            self.size
-        };
+        let size = screen::size_of_whole(self.settings).unwrap_or(self.size);
         let made = builder.of_object("", |builder| Picture::new(builder, size))?;
         Ok(*self.screen.get_or_init(|| made))
     }

@@ -2,10 +2,10 @@
 
 use crate::error::RenderError;
 use crate::frame::{Bound, Builder, Texture as Bounded, level_size};
-use crate::material::textures::levels_of;
+use crate::material::textures::{levels_of, rows};
 use exr::prelude::f16;
 use glam::{Vec2, Vec3, Vec4};
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effects, IMAGES_MET};
 use lapidary_scene::{Material, Texture, TextureSlot, Wrap};
 use std::sync::Arc;
 
@@ -20,9 +20,6 @@ const MOST_IMAGES: usize = 256;
 const MOST_BYTES: u64 = 512 << 20;
 /// Texels of an image's entry.
 const ENTRY: usize = 3;
-/// Slots of a body's images, in the order of their entries.
-const SLOTS: [TextureSlot; 3] = [TextureSlot::BaseColor, TextureSlot::Normal, TextureSlot::Transmission];
-
 /// Levels of an image, each its texels row by row.
 type Levels = Vec<Vec<Vec4>>;
 
@@ -53,19 +50,13 @@ impl Paint {
 
     /// Adds the images of a body; returns the number of its first texel, 0 if it has none.
     pub(crate) fn body(&mut self, material: &Material, without: Effects) -> Result<u32, RenderError> {
-        let is_left_out = |slot| match slot {
-            TextureSlot::Normal => without.has(Effect::NormalTexture),
-            TextureSlot::Transmission => without.has(Effect::TransmissionTexture),
-            _ => without.has(Effect::BaseColorTexture),
-        };
-        let has =
-            |slot: &TextureSlot| material.texture(*slot).is_some() && material.calls_for(*slot) && !is_left_out(*slot);
-        if !SLOTS.iter().any(has) {
+        let images = IMAGES_MET.map(|(effect, slot)| (slot, material.effective(slot).filter(|_| !without.has(effect))));
+        if images.iter().all(|(_, texture)| texture.is_none()) {
             return Ok(0);
         }
         let first = 1 + self.entries.len() as u32;
-        for slot in SLOTS {
-            let entry = match material.texture(slot).filter(|_| has(&slot)) {
+        for (slot, texture) in images {
+            let entry = match texture {
                 Some(texture) => self.entry(slot, texture, material)?,
                 None => [Vec4::NEG_ONE; ENTRY],
             };
@@ -96,19 +87,12 @@ impl Paint {
                 self.layers.len() - 1
             }
         };
-        let transform = texture.transform.affine();
-        let row = |row: usize| {
-            Vec3::new(transform.matrix2.row(row).x, transform.matrix2.row(row).y, transform.translation[row])
-        };
+        let [u, v] = rows(texture.transform);
         let wrap = texture.wrap.map(code);
         let (share, cutoff) =
             material.coverage.map_or((-1.0, -1.0), |coverage| (coverage.share, coverage.cutoff.unwrap_or(-1.0)));
         // The size follows once all images are there.
-        Ok([
-            row(0).extend(layer as f32),
-            row(1).extend((wrap[0] + 4 * wrap[1]) as f32),
-            Vec4::new(0.0, 0.0, share, cutoff),
-        ])
+        Ok([u.extend(layer as f32), v.extend((wrap[0] + 4 * wrap[1]) as f32), Vec4::new(0.0, 0.0, share, cutoff)])
     }
 
     /// Takes the first level from the largest images until all together take no more than they may.
@@ -173,15 +157,12 @@ impl Paint {
 
     /// Returns the size of the texture of all images, the number of its levels, and their bytes, layer by layer, level by level.
     fn stacked(&self) -> ([u32; 3], (u32, Vec<u8>)) {
+        let Self { layers, .. } = self;
+        if layers.is_empty() {
+            return ([1; 3], (1, vec![0; size_of::<[f16; 4]>()]));
+        }
         let size = self.size();
         let count = size[0].max(size[1]).ilog2() + 1;
-        let black: Layer;
-        let layers = if self.layers.is_empty() {
-            black = Layer::black();
-            std::slice::from_ref(&black)
-        } else {
-            &self.layers[..]
-        };
         let mut texels: Vec<[f16; 4]> = Vec::new();
         for level in 0..count {
             let [width, height] = level_size(size, level);
@@ -200,14 +181,6 @@ impl Paint {
         }
         let bytes = texels.iter().flatten().flat_map(|part| part.to_le_bytes()).collect();
         ([size[0], size[1], layers.len() as u32], (count, bytes))
-    }
-}
-
-impl Layer {
-    fn black() -> Self {
-        let texels = lapidary_scene::Texels::new(1, 1, vec![0; 4]).expect("one texel");
-        let texture = Texture::new(Arc::new(texels), lapidary_scene::Encoding::Linear);
-        Self { texture, scale: f32::NAN, size: [1, 1], levels: vec![vec![Vec4::ZERO]] }
     }
 }
 

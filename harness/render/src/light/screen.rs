@@ -3,6 +3,7 @@
 use crate::error::RenderError;
 use crate::frame::record::Record;
 use crate::frame::{Bound, Buffer, Builder, Depth, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
+use crate::picture::Tile;
 use crate::picture::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use crate::settings::Settings;
 use glam::{Mat4, UVec2};
@@ -17,9 +18,11 @@ pub(crate) const DEPTH: u32 = 8;
 /// and depth.
 const LARGEST_WHOLE: u32 = 4096;
 
-/// Returns how many samples along each side of a pixel the picture of a whole frame has that is drawn in tiles.
-pub(crate) fn samples_of_whole(settings: &Settings) -> u32 {
-    (LARGEST_WHOLE / settings.width.max(settings.height)).clamp(1, settings.samples)
+/// Returns the size in samples of the picture of a whole frame, if it is drawn in tiles.
+pub(crate) fn size_of_whole(settings: &Settings) -> Option<[u32; 2]> {
+    let Settings { width, height, samples, .. } = *settings;
+    let of_pixel = (LARGEST_WHOLE / width.max(height)).clamp(1, samples);
+    (Tile::all(width, height, samples).count() > 1).then(|| [width, height].map(|side| side * of_pixel))
 }
 
 /// Recipe that draws the picture into the stones' target.

@@ -16,7 +16,7 @@ const DARKEST: f32 = 0.9999;
 const DIRECTIONS: u32 = 64;
 
 /// The matter below a material's surface; fields as those of `ScatteringLaw` in the recipes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ScatteringLaw {
     gamma: Vec3,
     index: f32,

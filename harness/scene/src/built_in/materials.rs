@@ -93,6 +93,12 @@ pub(super) fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
     Material { name: name.to_owned(), ior, dispersion, ..polished() }
 }
 
+/// A material that reflects by Lambert's law alone.
+pub(super) fn matte(name: &str, [red, green, blue]: [f32; 3]) -> Material {
+    let base_color = Vec3::new(red, green, blue);
+    Material { name: name.to_owned(), base_color, ior: 1.0, roughness: 1.0, ..Material::standard() }
+}
+
 fn polished() -> Material {
     // One girdle radius: about as thick as the stone, and enough not to be a thin wall.
     Material { roughness: 0.0, transmission: 1.0, thickness: 1.0, ..Material::standard() }

@@ -1,7 +1,7 @@
 //! Stones among matte things, all near enough to one another that what leaves a stone meets them: on a
 //! tray, and in a ring.
 
-use glam::{DMat4, DQuat, DVec3, Vec3};
+use glam::{DMat4, DQuat, DVec3};
 
 use super::framing::framed;
 use super::materials;
@@ -9,7 +9,7 @@ use crate::camera::direction;
 use crate::cuts::{BrilliantParameters, StepCutParameters, round_brilliant, step_cut};
 use crate::polyhedron::Polyhedron;
 use crate::surfaces::{rounded_box, sphere, torus};
-use crate::{Averaging, Bounds, Material, Mesh, Object, Scene, SceneError};
+use crate::{Averaging, Bounds, Mesh, Object, Scene, SceneError};
 
 /// Half sizes of the tray, whose top is at height 0; and its edges' radius.
 const TRAY: DVec3 = DVec3::new(1.85, 0.1, 1.45);
@@ -23,17 +23,17 @@ pub(super) fn tray(name: &str) -> Result<Scene, SceneError> {
     let emerald = step_cut(&StepCutParameters::EMERALD)?;
     let leaning = DQuat::from_rotation_y(0.4) * DQuat::from_rotation_x(PAVILION.to_radians());
     let on_its_table = DQuat::from_rotation_y(-0.5) * DQuat::from_rotation_x(180f64.to_radians());
-    let ball = plain(sphere(0.5, 96)).placed(DQuat::IDENTITY, DVec3::new(0.95, 0.5, -0.75));
+    let ball = sphere(0.5, 96).without_uvs().placed(DQuat::IDENTITY, DVec3::new(0.95, 0.5, -0.75));
     let block = rounded_box(DVec3::new(0.42, 0.6, 0.28), EDGE, 4);
     let block = block.placed(DQuat::from_rotation_y(0.6), DVec3::new(-1.2, 0.6, -0.75));
     let objects = vec![
         Object::new(
             "tray",
             rounded_box(TRAY, EDGE, 4).placed(DQuat::IDENTITY, -TRAY.y * DVec3::Y),
-            matte([0.42, 0.10, 0.06]),
+            materials::matte("matte", [0.42, 0.10, 0.06]),
         ),
-        Object::new("ball", ball, matte([0.05, 0.16, 0.55])),
-        Object::new("block", block, matte([0.75, 0.55, 0.08])),
+        Object::new("ball", ball, materials::matte("matte", [0.05, 0.16, 0.55])),
+        Object::new("block", block, materials::matte("matte", [0.75, 0.55, 0.08])),
         Object::new("diamond", lying(&brilliant, 0.95, leaning, (-0.45, 0.2)), materials::diamond()),
         Object::new(
             "emerald",
@@ -57,7 +57,7 @@ const PRONGS: f64 = 0.11;
 pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
     let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
     let upright = DQuat::from_rotation_x(90f64.to_radians());
-    let mut ring = plain(torus(BAND, WIRE, 96, 24)).placed(upright, (BAND + WIRE) * DVec3::Y);
+    let mut ring = torus(BAND, WIRE, 96, 24).without_uvs().placed(upright, (BAND + WIRE) * DVec3::Y);
     let top = 2.0 * (BAND + WIRE) + LIFT;
     for quarter in 0..4 {
         // From the culet outwards and up, below the pavilion.
@@ -70,8 +70,8 @@ pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
     let stone = brilliant.to_mesh(Averaging::default());
     let lowest = Bounds::of(stone.positions.iter().copied()).min.y;
     let objects = vec![
-        Object::new("plate", plate, matte([0.10, 0.13, 0.20])),
-        Object::new("ring", ring, matte([0.80, 0.52, 0.20])),
+        Object::new("plate", plate, materials::matte("matte", [0.10, 0.13, 0.20])),
+        Object::new("ring", ring, materials::matte("matte", [0.80, 0.52, 0.20])),
         Object::new(
             "diamond",
             stone.placed(DQuat::IDENTITY, (top - f64::from(lowest)) * DVec3::Y),
@@ -79,17 +79,6 @@ pub(super) fn solitaire(name: &str) -> Result<Scene, SceneError> {
         ),
     ];
     Ok(framed(name, objects, direction(58.0, 24.0)))
-}
-
-/// Returns the mesh without texture coordinates: nothing on it is blurred.
-fn plain(mesh: Mesh) -> Mesh {
-    Mesh { uvs: Vec::new(), ..mesh }
-}
-
-/// A material that reflects by Lambert's law alone.
-fn matte([red, green, blue]: [f32; 3]) -> Material {
-    let base_color = Vec3::new(red, green, blue);
-    Material { name: "matte".to_owned(), base_color, ior: 1.0, roughness: 1.0, ..Material::standard() }
 }
 
 /// Returns a stone of this size, turned, that touches the tray.

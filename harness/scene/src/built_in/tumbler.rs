@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec2, DVec3, Vec3};
 
 use super::framing::VERTICAL_FOV;
-use super::translucent;
+use super::{materials, translucent};
 use crate::surfaces::{lathe, rounded_box};
 use crate::{Camera, Light, Material, Medium, Mesh, Object, Scene, SceneError};
 
@@ -38,11 +38,11 @@ pub(super) fn tumbler(name: &str) -> Result<Scene, SceneError> {
         0.25,
     );
     let objects = vec![
-        Object::new("table", Mesh { uvs: Vec::new(), ..table }, matte("wood", [0.30, 0.17, 0.09])),
+        Object::new("table", table, materials::matte("wood", [0.30, 0.17, 0.09])),
         // Where glass and water overlap, there is glass.
         Object::new("glass", glass(), Material { priority: 1, ..clear("glass", 1.52, 2.0 * GLASS.y as f32) }),
         Object::new("water", water(), clear("water", 1.333, 2.0 * GLASS.y as f32)),
-        Object::new("straw", straw(), matte("painted", [0.75, 0.06, 0.05])),
+        Object::new("straw", straw(), materials::matte("painted", [0.75, 0.06, 0.05])),
         Object::new("pane", pane, Material { roughness: 0.4, ..clear("frosted glass", 1.52, 2.0 * PANE.z as f32) }),
         Object::new("candle", candle.placed(DQuat::IDENTITY, CANDLE_AT), wax()),
     ];
@@ -59,7 +59,7 @@ pub(super) fn tumbler(name: &str) -> Result<Scene, SceneError> {
 
 /// Returns a body turned about the y axis, its corners rounded.
 fn turned(corners: &[DVec2], radius: f64) -> Mesh {
-    Mesh { uvs: Vec::new(), ..lathe(corners, radius, AROUND) }
+    lathe(corners, radius, AROUND).without_uvs()
 }
 
 /// Returns the tumbler: from the middle of its floor up the inner wall, over the rim and down.
@@ -103,12 +103,6 @@ fn straw() -> Mesh {
 
 fn clear(name: &str, ior: f32, thickness: f32) -> Material {
     Material { name: name.to_owned(), ior, thickness, transmission: 1.0, roughness: 0.0, ..Material::standard() }
-}
-
-/// A material that reflects by Lambert's law alone.
-fn matte(name: &str, [red, green, blue]: [f32; 3]) -> Material {
-    let base_color = Vec3::new(red, green, blue);
-    Material { name: name.to_owned(), base_color, ior: 1.0, roughness: 1.0, ..Material::standard() }
 }
 
 /// White wax, by eye: a centimetre is some thirty mean free paths.

@@ -172,9 +172,7 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
     }
     let ior = Extension::of(extensions(json), "KHR_materials_ior").and_then(|ior| ior.number("ior")).ok().flatten();
-    if let Some(ior) =
-        ior.filter(|ior| material.transmission == 0.0 && !(1.0..=f64::from(Material::LARGEST_INDEX)).contains(ior))
-    {
+    if let Some(ior) = ior.filter(|ior| material.transmission == 0.0 && nearest_index(*ior) != *ior as f32) {
         let instead = if nearest_index(ior) == 1.0 { "drawn as 1" } else { "drawn as 4" };
         lacking.note("index of refraction", format!("`ior` {ior:?}"), instead, user);
     }

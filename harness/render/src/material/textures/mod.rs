@@ -17,10 +17,14 @@ const TRANSMISSION: [u32; 2] = [18, 19];
 
 /// Fills a `TexturePlace` for a texture; the identity for none.
 pub(crate) fn place(record: Record, texture: Option<&Texture>) -> Record {
-    let transform = texture.map_or(TextureTransform::IDENTITY, |texture| texture.transform).affine();
-    let row =
-        |row: usize| Vec3::new(transform.matrix2.row(row).x, transform.matrix2.row(row).y, transform.translation[row]);
-    record.with("u", row(0)).with("v", row(1))
+    let [u, v] = rows(texture.map_or(TextureTransform::IDENTITY, |texture| texture.transform));
+    record.with("u", u).with("v", v)
+}
+
+/// Returns the rows of a map of texture coordinates.
+pub(crate) fn rows(transform: TextureTransform) -> [Vec3; 2] {
+    let map = transform.affine();
+    [0, 1].map(|row| map.matrix2.row(row).extend(map.translation[row]))
 }
 
 /// Adds the images that a pipeline reads of a body's material, and the samplers; returns them by binding. `reach` is how
