@@ -20,6 +20,12 @@ pub enum SceneError {
         /// The built-in scenes' names.
         known: String,
     },
+    /// A built-in scene is asked for what only files have.
+    #[error("scene `{name}` is built in: it has one camera and no animation; leave the camera and the time out")]
+    NoChoice {
+        /// Name of the scene.
+        name: String,
+    },
     /// A file cannot be used.
     #[error("{}: {problem}", path.display())]
     File {

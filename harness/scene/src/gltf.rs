@@ -7,11 +7,10 @@
 //! instances of a large mesh can need as much memory as a large file.
 //!
 //! The loader reads triangles (also strips and fans) with their first texture coordinates and
-//! colours, node transforms and instances (`gltf/instances.rs`), the first perspective camera,
-//! directional, point and spot lights (`gltf/light_node.rs`), materials (`gltf/material.rs`) and some
+//! colours, node transforms, at rest or at a time of the animations (`gltf/animation.rs`), instances
+//! (`gltf/instances.rs`), a camera (`gltf/camera_node.rs`), directional, point and spot lights (`gltf/light_node.rs`), materials (`gltf/material.rs`) and some
 //! of their textures (`gltf/texture.rs`). Anything else in the file is listed in [`Scene::lacking`]
-//! (`gltf/survey.rs`): other textures, skins, morph targets, animations and more. Bodies are shown at
-//! rest.
+//! (`gltf/survey.rs`): other textures, skins, morph targets and more.
 
 use std::path::Path;
 
@@ -19,9 +18,10 @@ use glam::Vec3;
 
 use super::camera::Camera;
 use super::object::vertices;
-use super::{Object, Scene, SceneError};
+use super::{Object, Opening, Scene, SceneError};
 
 mod accessor;
+mod animation;
 mod budget;
 mod buffers;
 mod camera_node;
@@ -65,10 +65,19 @@ const DEFAULT_VIEW: (f32, Vec3) = (0.47, Vec3::new(0.35, 0.45, 1.0));
 /// # Errors
 /// [`SceneError::File`] with the path and the problem.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    load_as(path, &Opening::default())
+}
+
+/// Loads a file with the camera, and at the time, that were chosen.
+///
+/// # Errors
+/// [`SceneError::File`] with the path and the problem.
+pub fn load_as(path: &Path, opening: &Opening) -> Result<Scene, SceneError> {
     let in_file = |problem| SceneError::File { path: path.to_owned(), problem };
     let base = path.parent().unwrap_or(Path::new(""));
-    let mut scene =
-        uri::read_file(path, MAX_FILE_BYTES).and_then(|bytes| parse_scene(&bytes, Some(base))).map_err(in_file)?;
+    let mut scene = uri::read_file(path, MAX_FILE_BYTES)
+        .and_then(|bytes| parse_scene(&bytes, Some(base), opening))
+        .map_err(in_file)?;
     if scene.name.is_empty() {
         let stem = path.file_stem().unwrap_or_default();
         scene.name = stem.to_string_lossy().into_owned();
@@ -82,19 +91,30 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 /// # Errors
 /// [`SceneError::Gltf`] with the problem.
 pub fn parse(bytes: &[u8], base: Option<&Path>) -> Result<Scene, SceneError> {
-    let mut scene = parse_scene(bytes, base)?;
+    parse_as(bytes, base, &Opening::default())
+}
+
+/// Parses the bytes of a file, with the camera, and at the time, that were chosen.
+///
+/// # Errors
+/// [`SceneError::Gltf`] with the problem.
+pub fn parse_as(bytes: &[u8], base: Option<&Path>, opening: &Opening) -> Result<Scene, SceneError> {
+    let mut scene = parse_scene(bytes, base, opening)?;
     if scene.name.is_empty() {
         "scene".clone_into(&mut scene.name);
     }
     Ok(scene)
 }
 
-fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
+fn parse_scene(bytes: &[u8], base: Option<&Path>, opening: &Opening) -> Result<Scene, GltfError> {
     let container::Container { json, binary } = container::split(bytes)?;
     head::check(json)?;
-    let root = json::root(json)?;
+    let mut root = json::root(json)?;
     requirement::check(&root)?;
     let buffers = buffers::Buffers::load(&root, binary, base)?;
+    if let Some(time) = opening.time {
+        animation::pose(&mut root, &buffers, time)?;
+    }
     let shown = nodes::Shown::of(&root)?;
 
     let mut budget = budget::Budget::new();
@@ -107,7 +127,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
     if objects.iter().all(|object| object.mesh.indices.is_empty()) {
         return Err(GltfError::NoTriangles);
     }
-    let camera = match camera_node::first_perspective(&root, &shown.nodes, &objects)? {
+    let camera = match camera_node::chosen(&root, &shown.nodes, &objects, opening.camera.as_deref())? {
         Some(camera) => camera,
         None => {
             let (vertical_fov, toward_eye) = DEFAULT_VIEW;
@@ -115,7 +135,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
         }
     };
     let (lights, light_radii) = light_node::lights(&root, &shown.nodes)?.into_iter().unzip();
-    let lacking = survey::lacking(&root, &shown.nodes, &materials);
+    let lacking = survey::lacking(&root, &shown.nodes, &materials, opening);
     Ok(Scene { name: shown.name, objects, lights, light_radii, camera, lacking })
 }
 

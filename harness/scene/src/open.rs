@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use crate::built_in::{self, list};
-use crate::{Scene, SceneError, gltf};
+use crate::{Opening, Scene, SceneError, gltf};
 
 impl Scene {
     /// Opens the scene that a user names on the command line: a built-in name, or a .glb or .gltf
@@ -14,7 +14,19 @@ impl Scene {
     /// Returns [`SceneError::UnknownName`] for a word that is neither a built-in nor looks like a
     /// file, and the error of [`gltf::load`] for a file.
     pub fn open(argument: &str) -> Result<Self, SceneError> {
-        if names_a_file(argument) { gltf::load(Path::new(argument)) } else { Self::named(argument) }
+        Self::open_as(argument, &Opening::default())
+    }
+
+    /// Opens the same with the camera, and at the time, that were chosen. A built-in scene has neither choice.
+    ///
+    /// # Errors
+    /// As [`Scene::open`], and [`SceneError::NoChoice`] if a built-in scene is asked for another camera or a time.
+    pub fn open_as(argument: &str, opening: &Opening) -> Result<Self, SceneError> {
+        if names_a_file(argument) {
+            return gltf::load_as(Path::new(argument), opening);
+        }
+        let scene = Self::named(argument)?;
+        if *opening == Opening::default() { Ok(scene) } else { Err(SceneError::NoChoice { name: scene.name }) }
     }
 
     /// Returns the file name, without an extension, for a picture of the scene that [`Scene::open`]

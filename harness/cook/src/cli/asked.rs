@@ -8,7 +8,7 @@ use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_scene::normals::Normals;
-use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
+use lapidary_scene::{Environment, Object, Opening, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -50,6 +50,12 @@ pub(super) struct Asked {
     /// Latitude-longitude .exr or .hdr image; the procedural studio by default.
     #[arg(long, value_name = "FILE")]
     environment: Option<PathBuf>,
+    /// Camera of the file: its name, its node's name, or its number; the first one by default.
+    #[arg(long, value_name = "NAME|N")]
+    camera: Option<String>,
+    /// Time of the file's animations in seconds; without it, bodies are at rest.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_time)]
+    time: Option<f32>,
 }
 
 const CDRF: &str = "cdrf";
@@ -63,6 +69,11 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
     let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
     parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
+}
+
+fn parse_time(text: &str) -> Result<f32, String> {
+    let time = text.parse::<f32>().ok().filter(|time| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| "expected seconds of at least 0, such as 1.5".to_owned())
 }
 
 fn parse_quality(text: &str) -> Result<Quality, String> {
@@ -94,7 +105,7 @@ impl Asked {
 
     /// Opens the scene, with the materials and normals that were asked for.
     pub(super) fn open(&self) -> Result<Scene, Failure> {
-        let mut scene = Scene::open(&self.scene)?;
+        let mut scene = Scene::open_as(&self.scene, &Opening { camera: self.camera.clone(), time: self.time })?;
         refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
         // By the names that the file gives: a preset has one of its own.
         let names = Names::of(&scene);

@@ -17,7 +17,7 @@ pub(super) struct Drawn {
     pub(super) asked: Asked,
     /// Camera direction in degrees off the vertical, and from +z towards +x; the scene's own camera
     /// by default.
-    #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
+    #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true, conflicts_with = "camera")]
     from: Option<(f32, f32)>,
     /// Factor on radiance before the tone curve.
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]

@@ -53,6 +53,10 @@ pub(super) const ROTATIONS: Kind = Kind {
     description: "VEC4 of float, or of normalised byte or short,",
 };
 
+/// Times of keys.
+pub(super) const SCALARS: Kind =
+    Kind { types: &[Type::Scalar], components: &[ComponentType::F32], description: "SCALAR of float" };
+
 /// Indices.
 pub(super) const INDICES: Kind = Kind {
     types: &[Type::Scalar],
@@ -148,6 +152,11 @@ impl<'a> Elements<'a> {
 
     /// Iterates over the elements as red, green and blue. Intended for [`COLORS`].
     pub(super) fn colors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
+        self.fractions()
+    }
+
+    /// Iterates over the elements as single numbers. Intended for [`SCALARS`].
+    pub(super) fn numbers(self) -> impl Iterator<Item = [f32; 1]> + 'a {
         self.fractions()
     }
 

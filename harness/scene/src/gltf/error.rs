@@ -113,6 +113,14 @@ pub enum GltfError {
         /// Number of vertices.
         vertices: u64,
     },
+    /// No camera of the scene has the name or number that was asked for.
+    #[error("its scene has no camera `{which}`; {}", if known.is_empty() { "it has none: leave the camera out".to_owned() } else { format!("it has {known}") })]
+    NoCamera {
+        /// Name or number that was asked for.
+        which: String,
+        /// The scene's cameras.
+        known: String,
+    },
     /// The scene shows no triangles.
     #[error("its scene shows no triangles; put a mesh of triangles into the scene")]
     NoTriangles,

@@ -3,7 +3,7 @@
 //! removed.
 
 use ::gltf::json::Root;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::error::GltfError;
 
@@ -24,8 +24,9 @@ pub(super) fn root(json: &[u8]) -> Result<Root, GltfError> {
         return Err(first);
     }
     // The first message has the line and column of the problem in the original text.
-    let mended = serde_json::from_slice(json).ok().and_then(|value| serde_json::from_value(mended(value)).ok());
-    mended.ok_or(first)
+    let Ok(value) = serde_json::from_slice(json).map(mended) else { return Err(first) };
+    let root = |value| serde_json::from_value(value).ok();
+    root(value.clone()).or_else(|| root(without_animations(value))).ok_or(first)
 }
 
 fn mended(mut value: Value) -> Value {
@@ -33,9 +34,9 @@ fn mended(mut value: Value) -> Value {
     for name in NOT_TAKEN {
         members.remove(name);
     }
-    // Only the number of animations is reported; nothing else of them is read.
-    for animation in members.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
-        *animation = json!({"channels": [], "samplers": []});
+    // A channel without a node moves something else, by an extension.
+    for channels in animations(members).filter_map(|animation| animation.get_mut("channels")?.as_array_mut()) {
+        channels.retain(|channel| channel.pointer("/target/node").is_some());
     }
     // A scene may be empty.
     for scene in members.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
@@ -44,4 +45,16 @@ fn mended(mut value: Value) -> Value {
         }
     }
     value
+}
+
+/// Leaves the number of animations alone, so that it can be reported.
+fn without_animations(mut value: Value) -> Value {
+    for animation in value.as_object_mut().into_iter().flat_map(animations) {
+        *animation = json!({"channels": [], "samplers": []});
+    }
+    value
+}
+
+fn animations(members: &mut Map<String, Value>) -> impl Iterator<Item = &mut Value> {
+    members.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten()
 }

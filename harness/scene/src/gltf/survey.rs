@@ -18,10 +18,15 @@ use super::material::{Known, Materials, extensions, nearest_index};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
 use super::{extras, instances, light_node};
-use crate::{Material, TextureSlot};
+use crate::{Material, Opening, TextureSlot};
 
 /// Lists all unsupported features of the file. Its references are known to be valid.
-pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Materials<'_>) -> Vec<String> {
+pub(super) fn lacking(
+    root: &Root,
+    nodes: &[ShownNode<'_>],
+    materials: &Materials<'_>,
+    opening: &Opening,
+) -> Vec<String> {
     let mut lacking = Lacking::default();
     let mut meshes = BTreeSet::new();
     for node in nodes {
@@ -39,8 +44,9 @@ pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Material
         surface(json, &known.plain, user, &mut lacking);
         inside(json, &known.plain, user, &mut lacking);
     }
-    cameras(root, nodes, &mut lacking);
-    if !root.animations.is_empty() {
+    cameras(root, nodes, opening, &mut lacking);
+    let moves = opening.time.is_some() && root.animations.iter().any(|animation| !animation.channels.is_empty());
+    if !root.animations.is_empty() && !moves {
         lacking.note("animations", root.animations.len().to_string(), "bodies are drawn at rest", User::FILE);
     }
     for name in root.extensions_used.iter().filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())) {
@@ -221,17 +227,14 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
     }
 }
 
-fn cameras(root: &Root, nodes: &[ShownNode<'_>], lacking: &mut Lacking) {
+fn cameras(root: &Root, nodes: &[ShownNode<'_>], opening: &Opening, lacking: &mut Lacking) {
     let of_nodes = nodes.iter().filter_map(|node| node.node.camera.map(|camera| camera.value()));
-    let mut has_first = false;
+    let mut has_first = opening.camera.is_none();
     for (index, camera) in of_nodes.filter_map(|index| Some((index, root.cameras.get(index)?))) {
         let user = User { kind: "camera", index, name: camera.name.as_deref() };
         unknown_extensions(camera.extensions.as_ref().map(|all| &all.others), user, lacking);
-        if camera.perspective.is_none() {
-            lacking.note("cameras", "`orthographic`".to_owned(), "passed over", user);
-        } else if std::mem::replace(&mut has_first, true) {
-            let what = "`perspective` after the first".to_owned();
-            lacking.note("cameras", what, "the scene is seen through the first", user);
+        if opening.camera.is_none() && !std::mem::replace(&mut has_first, false) {
+            lacking.note("cameras", "a view after the first".to_owned(), "the scene is seen through the first", user);
         }
     }
 }

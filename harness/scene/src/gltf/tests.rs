@@ -7,6 +7,8 @@ use super::*;
 use crate::normals::FALLBACK_NORMAL;
 use crate::{Dispersion, Material, Medium, Mineral, glb};
 
+mod animations;
+mod cameras;
 mod contradictions;
 mod example;
 mod head;
@@ -333,27 +335,6 @@ fn a_material_with_large_extras_is_read_once() {
     let scene = scene.unwrap();
     assert_eq!((scene.objects.len(), only_mesh(&scene).triangle_count()), (1, 1_000));
     assert_eq!(scene.objects[0].material.ior, Mineral::Quartz.index());
-}
-
-#[test]
-fn the_first_perspective_camera_is_taken() {
-    let scene = load_changed(|d| {
-        d["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
-        d["nodes"] = json!([
-            {"mesh": 0},
-            {"camera": 0},
-            {"camera": 1, "translation": [0, 0, 5], "scale": [2, 2, 2]},
-            {"camera": 2},
-        ]);
-        d["cameras"] = json!([
-            {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 1}},
-            {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}},
-            {"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}},
-        ]);
-    });
-    let camera = scene.unwrap().camera;
-    assert_eq!((camera.eye, camera.up, camera.vertical_fov), (Vec3::Z * 5.0, Vec3::Y, 0.6));
-    assert_eq!(camera.target, Vec3::ZERO);
 }
 
 #[test]

@@ -214,8 +214,7 @@ fn lights_cameras_and_instances_are_named() {
     assert_eq!(
         found,
         [
-            "cameras: `orthographic` of camera `plan` (passed over)",
-            "cameras: `perspective` after the first of 2 cameras, first 1 (the scene is seen through the first)",
+            "cameras: a view after the first of 2 cameras, first 1 (the scene is seen through the first)",
             "extensions: `VENDOR_x` of node 4 (not known)",
             "instances: `COLOR_0` of node 0 (all instances look alike)",
             "instances: `EXT_mesh_gpu_instancing` of node 3 (the node has no mesh)",
