@@ -14,6 +14,8 @@
 
 // Samples along each side of a pixel.
 override SAMPLES: u32 = 4u;
+// Whether bodies stand before the backdrop; without it, alpha is the share of the pixel that they cover.
+override BACKDROP: bool = true;
 
 struct DisplayFrame {
     // Start of this tile in the picture, and size of the picture, in pixels.
@@ -30,7 +32,7 @@ struct DisplayOutput {
     // Plain mean of linear radiance before the exposure, without the backdrop; alpha is the share
     // of covered samples.
     @location(0) linear: vec4f,
-    // Mean of the tone-mapped samples, encoded, opaque.
+    // Mean of the tone-mapped samples, encoded, opaque; without the backdrop that of the covered ones, with straight alpha.
     @location(1) encoded: vec4f,
 }
 
@@ -55,14 +57,20 @@ fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
     let pixel = vec2u(position.xy);
     let behind = display_backdrop(frame.tile + position.xy);
     var radiance = vec4f(0.0f);
-    var light = vec3f(0.0f);
+    var light = vec4f(0.0f);
     for (var row = 0u; row < SAMPLES; row++) {
         for (var column = 0u; column < SAMPLES; column++) {
             let found = textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
             radiance += found;
-            light += srgb_tone_curve(frame.exposure * found.rgb + (1.0f - found.a) * behind);
+            if (BACKDROP) {
+                let before = frame.exposure * found.rgb + (1.0f - found.a) * behind;
+                light += vec4f(srgb_tone_curve(before), 1.0f);
+            } else if (found.a > 0.0f) {
+                light += found.a * vec4f(srgb_tone_curve(frame.exposure * found.rgb / found.a), 1.0f);
+            }
         }
     }
     let count = f32(SAMPLES * SAMPLES);
-    return DisplayOutput(radiance / count, vec4f(srgb_encode_color(light / count), 1.0f));
+    let mean = light.rgb / select(1.0f, light.a, light.a > 0.0f);
+    return DisplayOutput(radiance / count, vec4f(srgb_encode_color(mean), light.a / count));
 }

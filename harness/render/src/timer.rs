@@ -71,7 +71,7 @@ impl<'gpu> FrameTimer<'gpu> {
         layers.draw(&mut builder, &pass.variants, view, size);
         let draw_calls = builder.frame().draw_calls();
         if displayed {
-            let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;
+            let pipeline = display::pipeline(&mut builder, 1, settings.backdrop, &DISPLAY_FORMATS)?;
             let groups = display::group(&mut builder, pipeline, color, Vec2::ZERO, settings);
             let usage = wgpu::TextureUsages::empty();
             let targets = DISPLAY_FORMATS.map(|format| builder.target("screen", [width, height, 1], format, usage));

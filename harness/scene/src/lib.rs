@@ -45,6 +45,7 @@ pub mod solver;
 pub mod spectrum;
 pub mod surfaces;
 pub mod texture;
+mod turntable;
 pub mod view;
 
 pub use bounds::Bounds;

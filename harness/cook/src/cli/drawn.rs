@@ -22,6 +22,9 @@ pub(super) struct Drawn {
     /// Factor on radiance before the tone curve.
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
+    /// What is behind the bodies: dark paper, or nothing, for a PNG with straight alpha.
+    #[arg(long, default_value = "paper", value_parser = ["paper", "none"])]
+    background: String,
     /// Samples along each side of a pixel.
     #[arg(long, default_value_t = lapidary_scene::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
     samples: u32,
@@ -230,6 +233,7 @@ impl Drawn {
         let extinction_scale = self.optical_path.as_ref().and_then(|options| options.extinction_scale);
         let settings = Settings {
             exposure: self.exposure,
+            backdrop: self.background != "none",
             samples: self.samples,
             gem: self.gem.as_ref().map_or(asked.gem, Gem::options),
             diffuse: DiffuseOptions {

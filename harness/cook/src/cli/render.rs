@@ -8,7 +8,7 @@ use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_reference::spectral::Lost;
 use lapidary_render as render;
 use lapidary_render::file::{self, Format};
-use lapidary_render::{ReferenceOptions, Settings, WalkOptions, WalkedPicture};
+use lapidary_render::{Picture, ReferenceOptions, Settings, WalkOptions, WalkedPicture};
 use lapidary_scene::Scene;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +24,10 @@ pub(super) struct Arguments {
     /// folder by default, or SCENE.picture.png if the scene is read from a file of that name.
     #[arg(long, value_name = "F.png|F.exr", help_heading = "Options")]
     out: Option<PathBuf>,
+    /// So many pictures in place of one, of the bodies as they turn once about the vertical, under the same lights: F-000.png,
+    /// F-001.png and so on.
+    #[arg(long, value_name = "N", value_parser = number::whole(1..=MOST_PICTURES), help_heading = "Options")]
+    turntable: Option<u32>,
     #[command(flatten)]
     reference: Option<Reference>,
     #[command(flatten)]
@@ -61,6 +65,9 @@ struct Walks {
     #[arg(long, value_parser = ["matched", "dielectric"])]
     boundary: Option<String>,
 }
+
+/// Most pictures of a turn: ten for each degree.
+const MOST_PICTURES: u32 = 3600;
 
 impl Walks {
     fn options(&self) -> WalkOptions {
@@ -145,21 +152,58 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let inputs = arguments.drawn.asked.inputs();
     let inputs = || inputs.iter().map(PathBuf::as_path);
     let out = arguments.out.clone().unwrap_or_else(|| default_output(&arguments.drawn.asked.scene, inputs));
-    Format::of_path(&out)?;
-    lapidary_files::refuse_input(&out, inputs())?;
-    lapidary_files::check_writable(&out)?;
+    let format = Format::of_path(&out)?;
+    let size = [settings.width, settings.height];
+    let (files, scenes): (Vec<PathBuf>, Box<dyn Iterator<Item = Scene>>) = match arguments.turntable {
+        None => (vec![out], Box::new(std::iter::once(scene))),
+        Some(count) => {
+            let files = (0..count).map(|number| numbered(&out, number, format)).collect();
+            (files, Box::new(scene.turntable(count, size)))
+        }
+    };
+    files.iter().try_for_each(|file| check_output(file, inputs()))?;
+    // What is told of one picture of a turn holds for all.
+    let mut told = false;
+    for (scene, out) in scenes.zip(&files) {
+        let picture = draw(context, &scene, &settings)?;
+        file::write(&picture, out)?;
+        if !std::mem::replace(&mut told, true) {
+            notes.extend(planned(&scene, &settings));
+            notes.retain(|note| !is_told_again(note, &picture.notes));
+            notes.extend(picture.notes.iter().cloned());
+            tell(&notes, &scene);
+        }
+        output::line(&out.display().to_string())?;
+        tell_quality(&picture)?;
+    }
+    Ok(Outcome::Passed)
+}
+
+/// Refuses to write over what is read, and where nothing can be written.
+fn check_output<'a>(out: &Path, inputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    lapidary_files::refuse_input(out, inputs)?;
+    Ok(lapidary_files::check_writable(out)?)
+}
+
+/// Returns the file of one picture of several: `ring-007.png` for `ring.png`.
+fn numbered(out: &Path, number: u32, format: Format) -> PathBuf {
+    let mut name = out.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{number:03}.{}", format.ending()));
+    out.with_file_name(name)
+}
+
+fn draw(context: &Context, scene: &Scene, settings: &Settings) -> Result<Picture, Failure> {
     let bar = progress::bar(0, "rendering");
-    let picture = render::render_reporting(context.gpu()?, &scene, &settings, &mut |done, total| {
+    let picture = render::render_reporting(context.gpu()?, scene, settings, &mut |done, total| {
         bar.set_length(total);
         bar.set_position(done);
     })?;
     bar.finish_and_clear();
-    file::write(&picture, &out)?;
-    notes.extend(planned(&scene, &settings));
-    notes.retain(|note| !is_told_again(note, &picture.notes));
-    notes.extend(picture.notes);
-    tell(&notes, &scene);
-    output::line(&out.display().to_string())?;
+    Ok(picture)
+}
+
+/// Tells what a reference says of its picture.
+fn tell_quality(picture: &Picture) -> Result<(), Failure> {
     if let Some(Lost { max, mean }) = picture.lost {
         output::line(&format!(
             "energy of a camera ray that was not traced to its end: {max:.1e} at most, {mean:.1e} on average"
@@ -171,5 +215,5 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             100.0 * error
         ))?;
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }

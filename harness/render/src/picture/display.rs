@@ -13,7 +13,7 @@ const RECIPE: &str = "display";
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Linear radiance and coverage, f32.
 const LINEAR: &str = "linear picture";
-/// sRGB, opaque.
+/// sRGB, opaque or with straight alpha.
 pub(crate) const ENCODED: &str = "encoded picture";
 
 /// Averages the samples, linear and tone-mapped, and reads both pictures back.
@@ -31,7 +31,7 @@ impl DisplayPass {
     /// Creates the pass for tiles of a picture with the settings' size and samples.
     pub(crate) fn new(builder: &mut Builder<'_>, settings: &Settings) -> Result<Self, RenderError> {
         let count = settings.samples;
-        let pipeline = pipeline(builder, count, &[SAMPLE_FORMAT, ENCODED_FORMAT])?;
+        let pipeline = pipeline(builder, count, settings.backdrop, &[SAMPLE_FORMAT, ENCODED_FORMAT])?;
         let [width, height] = [settings.width, settings.height].map(|side| side.min(Tile::side(count)));
         use wgpu::TextureUsages as Usage;
         let usage = Usage::TEXTURE_BINDING | Usage::COPY_DST;
@@ -56,17 +56,18 @@ impl DisplayPass {
     }
 }
 
-/// Returns the display recipe for `count` samples along each side of a pixel.
+/// Returns the display recipe for `count` samples along each side of a pixel, with the backdrop or without.
 pub(crate) fn pipeline(
     builder: &mut Builder<'_>,
     count: u32,
+    backdrop: bool,
     formats: &[wgpu::TextureFormat],
 ) -> Result<PipelineId, RenderError> {
     Ok(builder.render_pipeline(&PipelineSource {
         recipe: RECIPE,
         source: &lapidary_wgsl::recipe_source(RECIPE),
         entries: ["display_vertex", "display_fragment"],
-        constants: &[("SAMPLES", f64::from(count))],
+        constants: &[("SAMPLES", f64::from(count)), ("BACKDROP", f64::from(u8::from(backdrop)))],
         formats,
         depth: None,
     })?)

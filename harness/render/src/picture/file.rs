@@ -40,6 +40,15 @@ pub enum Format {
 }
 
 impl Format {
+    /// Returns the ending of a file's name.
+    #[must_use]
+    pub fn ending(self) -> &'static str {
+        match self {
+            Format::Png => "png",
+            Format::Exr => "exr",
+        }
+    }
+
     /// Returns the format that the extension of `path` names.
     pub fn of_path(path: &Path) -> Result<Format, FileError> {
         match path.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase).as_deref() {
@@ -66,17 +75,21 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), FileError> {
     Ok(lapidary_files::replace(path, &bytes)?)
 }
 
-/// Encodes opaque pixels as a PNG without alpha.
+/// Encodes pixels as a PNG, without alpha if all are opaque.
 pub fn png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, String> {
-    let rgb: Vec<u8> = pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    let is_opaque = pixels.iter().all(|[.., alpha]| *alpha == 255);
+    let (data, color) = if is_opaque {
+        (pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect(), image::ExtendedColorType::Rgb8)
+    } else {
+        (pixels.concat(), image::ExtendedColorType::Rgba8)
+    };
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new_with_quality(
         Cursor::new(&mut bytes),
         image::codecs::png::CompressionType::Best,
         image::codecs::png::FilterType::Adaptive,
     );
-    image::ImageEncoder::write_image(encoder, &rgb, width, height, image::ExtendedColorType::Rgb8)
-        .map_err(|error| error.to_string())?;
+    image::ImageEncoder::write_image(encoder, &data, width, height, color).map_err(|error| error.to_string())?;
     Ok(bytes)
 }
 

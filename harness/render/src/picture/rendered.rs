@@ -12,7 +12,7 @@ pub struct Picture {
     pub height: u32,
     /// Linear radiance and coverage.
     pub linear: Vec<[f32; 4]>,
-    /// sRGB, opaque: the mean of the tone-mapped samples, if there are samples.
+    /// sRGB: the mean of the tone-mapped samples, if there are samples. Opaque, or, without a backdrop, with straight alpha.
     pub encoded: Vec<[u8; 4]>,
     /// Energy that the reference of clear stones did not follow; `None` if it did not render the
     /// picture.

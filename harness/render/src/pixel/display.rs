@@ -12,9 +12,15 @@ pub fn backdrop(pixel: Vec2, size: Vec2) -> Vec3 {
     edge * (1.0 - falloff) + middle * falloff
 }
 
-/// Returns the code values, from 0 to 1, of a pixel with these samples, each linear radiance and
-/// coverage, in front of `behind`.
-pub fn shown(samples: &[Vec4], exposure: f32, behind: Vec3) -> Vec3 {
-    let light = |sample: &Vec4| srgb::tone_curve(exposure * sample.truncate() + (1.0 - sample.w) * behind);
-    srgb::encode_color(samples.iter().map(light).sum::<Vec3>() / samples.len() as f32)
+/// Returns the code values and alpha, from 0 to 1, of a pixel with these samples, each linear radiance and coverage. In front of
+/// `behind`, a linear colour, it is opaque; before nothing, its alpha is straight.
+pub fn shown(samples: &[Vec4], exposure: f32, behind: Option<Vec3>) -> Vec4 {
+    let light = |sample: &Vec4| match behind {
+        Some(behind) => srgb::tone_curve(exposure * sample.truncate() + (1.0 - sample.w) * behind).extend(1.0),
+        None if sample.w > 0.0 => sample.w * srgb::tone_curve(exposure * sample.truncate() / sample.w).extend(1.0),
+        None => Vec4::ZERO,
+    };
+    let light: Vec4 = samples.iter().map(light).sum();
+    let mean = light.truncate() / if light.w > 0.0 { light.w } else { 1.0 };
+    srgb::encode_color(mean).extend(light.w / samples.len() as f32)
 }

@@ -33,6 +33,8 @@ pub struct Settings {
     pub environment: Environment,
     /// Factor applied to radiance before the tone curve.
     pub exposure: f32,
+    /// Whether the displayed picture has the backdrop behind bodies; otherwise it has straight alpha.
+    pub backdrop: bool,
     /// Rung that draws the bodies; `ByMaterial` chooses one for each.
     pub rung: Rung,
     /// Bodies with a rung of their own, by name.
@@ -198,6 +200,7 @@ impl Settings {
             samples: SAMPLES,
             environment: Environment::Studio,
             exposure: 1.0,
+            backdrop: true,
             rung: Rung::PAPER,
             rungs: Vec::new(),
             quality: Quality::default(),

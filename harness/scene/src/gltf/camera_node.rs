@@ -30,11 +30,10 @@ pub(super) fn chosen(
         return cameras.first().map(|&(node, index, camera)| seen_through(node, index, camera, objects)).transpose();
     };
     let named = |name: Option<&String>| name.is_some_and(|name| name == which);
-    let ways: [&dyn Fn(&ShownNode<'_>, usize, &JsonCamera) -> bool; 3] =
-        [&|_, _, camera| named(camera.name.as_ref()), &|node, _, _| named(node.node.name.as_ref()), &|_, index, _| {
-            which.parse() == Ok(index)
-        }];
-    let found = ways.into_iter().find_map(|is| cameras.iter().find(|(node, index, camera)| is(node, *index, camera)));
+    let by_name = cameras.iter().find(|(_, _, camera)| named(camera.name.as_ref()));
+    let by_node = || cameras.iter().find(|(node, ..)| named(node.node.name.as_ref()));
+    let by_number = || cameras.iter().find(|(_, index, _)| which.parse() == Ok(*index));
+    let found = by_name.or_else(by_node).or_else(by_number);
     let Some(&(node, index, camera)) = found else {
         let known = cameras.iter().map(|(_, index, camera)| designation("camera", *index, camera.name.as_deref()));
         return Err(GltfError::NoCamera { which: excerpt(which), known: shortened(known) });

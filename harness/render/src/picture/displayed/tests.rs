@@ -48,7 +48,7 @@ fn samples_are_tone_mapped_before_they_are_averaged() {
                 (0..samples * samples).map(|k| Vec4::from_array(grid[sample(k) as usize])).collect();
             let place = Vec2::new(column as f32, row as f32) + 0.5;
             let behind = backdrop(place, Vec2::new(width as f32, height as f32));
-            let expected = 255.0 * shown(&pixel_samples, settings.exposure, behind);
+            let expected = 255.0 * shown(&pixel_samples, settings.exposure, Some(behind)).truncate();
             // Half a step of rounding, plus the difference of the formulas: 64 sums of 2^-24, 20
             // ulp of the curve and 6e-6 of the encoding, times 255.
             let found = Vec3::from_array([0, 1, 2].map(|k| f32::from(encoded[k])));
@@ -57,11 +57,36 @@ fn samples_are_tone_mapped_before_they_are_averaged() {
             let bound = 64.0 * f32::EPSILON * pixel_samples.iter().copied().fold(Vec4::ZERO, Vec4::max);
             assert!((Vec4::from_array(*linear) - mean).abs().cmple(bound).all(), "{column} {row}: {linear:?} {mean}");
             // The pixel if the mean were tone-mapped instead.
-            let late = 255.0 * shown(&[mean], settings.exposure, behind);
+            let late = 255.0 * shown(&[mean], settings.exposure, Some(behind)).truncate();
             differing += u32::from((late - expected).abs().max_element() > 8.0);
         }
         println!("{samples}: {differing} of {} pixels would differ by more than 8 steps", width * height);
         assert_eq!(samples > 1, differing > width * height / 4, "{samples}: {differing}");
+    }
+}
+
+/// Without a backdrop, alpha is the share that is covered, and the colour that of the covered samples alone: over any ground, the
+/// pixel is what a compositor that mixes emitted light makes of it.
+#[test]
+fn without_a_backdrop_the_alpha_is_straight() {
+    let settings = Settings { samples: 2, backdrop: false, exposure: 0.5, ..Settings::of_size(1, 1) };
+    let (light, none) = ([0.8, 0.4, 0.2, 1.0], [0.0; 4]);
+    let half = [0.2, 0.1, 0.05, 0.25];
+    for (samples, alpha) in [
+        ([light, light, light, light], 1.0),
+        ([light, none, light, none], 0.5),
+        ([none, none, half, none], 0.0625),
+        ([light, half, half, none], 0.375),
+        ([none, none, none, none], 0.0),
+    ] {
+        let [red, green, blue, found] = displayed(&samples, &settings).encoded[0].map(f32::from);
+        let expected = 255.0 * shown(&samples.map(Vec4::from_array), 0.5, None);
+        assert!((found - 255.0 * alpha).abs() <= 0.5, "{found} {alpha}");
+        // Each sample has the same colour.
+        let colour = if alpha > 0.0 { 255.0 * shown(&[Vec4::from_array(light)], 0.5, None) } else { Vec4::ZERO };
+        let found = Vec4::new(red, green, blue, found);
+        assert!((found - expected).abs().max_element() <= 0.503, "{found} {expected}");
+        assert!((found - colour).truncate().abs().max_element() <= 0.503, "{found} {colour}");
     }
 }
 

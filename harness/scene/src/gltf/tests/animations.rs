@@ -54,7 +54,7 @@ fn a_cubic_spline_gives_a_cubic_back() {
     let cube = |t: f32| [0.0, 3.0 * t * t, 0.0, 0.0, t.powi(3), 0.0, 0.0, 3.0 * t * t, 0.0];
     let keys = [-1.0, 0.5, 2.0];
     // Of each key the tangent before it, its value and the tangent after it.
-    let values: Vec<f32> = keys.into_iter().flat_map(|t| cube(t)).collect();
+    let values: Vec<f32> = keys.into_iter().flat_map(cube).collect();
     let spline = animated("translation", "CUBICSPLINE", &keys, &values);
     for time in [0.0_f32, 0.25, 0.75, 1.9] {
         let y = corner(&spline, time).y;
