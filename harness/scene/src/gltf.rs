@@ -43,6 +43,7 @@ mod primitive;
 mod requirement;
 mod sources;
 mod sparse;
+mod specular_glossiness;
 mod stored;
 mod survey;
 mod texture;

@@ -23,6 +23,11 @@ impl<'a> Extension<'a> {
         Self { members: value.as_object() }
     }
 
+    /// Whether the file has the extension.
+    pub(super) fn is_there(&self) -> bool {
+        self.members.is_some()
+    }
+
     pub(super) fn member(&self, key: &str) -> Option<&'a Value> {
         self.members.and_then(|members| members.get(key))
     }
@@ -30,6 +35,10 @@ impl<'a> Extension<'a> {
     pub(super) fn number(&self, key: &str) -> Result<Option<f64>, String> {
         let number = self.member(key).map(|value| value.as_f64().ok_or_else(|| wrong_kind(key, value, "a number")));
         number.transpose()
+    }
+
+    pub(super) fn four_numbers(&self, key: &str) -> Result<Option<[f64; 4]>, String> {
+        self.numbers(key, "four numbers")
     }
 
     pub(super) fn three_numbers(&self, key: &str) -> Result<Option<[f64; 3]>, String> {

@@ -26,13 +26,25 @@ pub const MAX_OBJECTS: u64 = 1 << 16;
 pub const MAX_COORDINATE: f32 = 1e9;
 
 /// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 8] = [
+pub const KNOWN_EXTENSIONS: [&str; 9] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_dispersion",
     "KHR_materials_diffuse_transmission",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_lights_punctual",
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
+];
+
+/// Extensions of materials that are known and not drawn, and what is drawn instead.
+pub(super) const NOT_DRAWN: [(&str, &str); 7] = [
+    ("KHR_materials_anisotropy", "highlights are round"),
+    ("KHR_materials_clearcoat", "the surface below is drawn alone"),
+    ("KHR_materials_emissive_strength", "nothing shines by itself"),
+    ("KHR_materials_iridescence", "the surface is drawn without its film"),
+    ("KHR_materials_sheen", "the surface below is drawn alone"),
+    ("KHR_materials_specular", "reflection follows the index of refraction alone"),
+    ("KHR_materials_unlit", "lights and shadows fall on it"),
 ];

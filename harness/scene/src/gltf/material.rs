@@ -1,5 +1,6 @@
 //! Materials of a file: base colour, roughness, `KHR_materials_ior`, `KHR_materials_transmission`,
-//! `KHR_materials_volume`, `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, and
+//! `KHR_materials_volume`, `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, the archived
+//! `KHR_materials_pbrSpecularGlossiness`, and
 //! `extras.lapidary` for properties that glTF cannot express (`gltf/extras.rs`). Textures are read by
 //! `gltf/texture.rs`. All other properties of a material are listed by `gltf/survey.rs`.
 
@@ -18,11 +19,12 @@ use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::extras;
 use super::medium;
+use super::specular_glossiness::{self, Factors};
 use super::texture::{Reference, Shortfall, Textures};
 use crate::{Coverage, Dispersion, Material, TextureSlot};
 
 /// Extensions whose specifications forbid combining them with any of [`OF_PHYSICAL_SHADING`].
-const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"];
+const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", specular_glossiness::NAME];
 
 /// Extensions of the metallic-roughness material.
 const OF_PHYSICAL_SHADING: [&str; 11] = [
@@ -111,7 +113,10 @@ impl<'a> Materials<'a> {
 /// References of a material to textures that are read.
 fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
     let mut found = Vec::new();
-    if let Some(info) = &json.pbr_metallic_roughness.base_color_texture {
+    let archived = Extension::of(extensions(json), specular_glossiness::NAME)?;
+    if let Some(value) = archived.member(specular_glossiness::DIFFUSE_TEXTURE) {
+        found.push(reference(TextureSlot::BaseColor, specular_glossiness::DIFFUSE_TEXTURE, value)?);
+    } else if let (Some(info), false) = (&json.pbr_metallic_roughness.base_color_texture, archived.is_there()) {
         let extensions = info.extensions.as_ref().map(|all| &all.others);
         found.push(Reference {
             slot: TextureSlot::BaseColor,
@@ -130,13 +135,17 @@ fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
         ("KHR_materials_diffuse_transmission", TextureSlot::DiffuseTransmission),
     ] {
         let Some(value) = Extension::of(extensions(json), name)?.member(slot.name()) else { continue };
-        let info = Info::deserialize(value).map_err(|error| {
-            format!("its {} is not valid glTF: {}; export it again", slot.name(), excerpt(&error.to_string()))
-        })?;
-        let extensions = value.get("extensions").and_then(Value::as_object);
-        found.push(Reference { slot, index: info.index.value(), set: info.tex_coord, extensions });
+        found.push(reference(slot, slot.name(), value)?);
     }
     Ok(found)
+}
+
+/// Reads an extension's reference to a texture from its member `name`.
+fn reference<'a>(slot: TextureSlot, name: &str, value: &'a Value) -> Result<Reference<'a>, String> {
+    let info = Info::deserialize(value)
+        .map_err(|error| format!("its {name} is not valid glTF: {}; export it again", excerpt(&error.to_string())))?;
+    let extensions = value.get("extensions").and_then(Value::as_object);
+    Ok(Reference { slot, index: info.index.value(), set: info.tex_coord, extensions })
 }
 
 /// Extensions of a material, by name.
@@ -183,16 +192,25 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     Ok(material)
 }
 
+/// Returns the factors of core glTF, or those that its archived form of a material amounts to.
+pub(super) fn factors(json: &JsonMaterial) -> Result<Factors, String> {
+    let archived = Extension::of(extensions(json), specular_glossiness::NAME)?;
+    if archived.is_there() {
+        return specular_glossiness::factors(archived);
+    }
+    let core = &json.pbr_metallic_roughness;
+    let (metallic, roughness) = (core.metallic_factor.0, core.roughness_factor.0);
+    Ok(Factors { base_color: core.base_color_factor.0, metallic, roughness })
+}
+
 /// Reads the surface properties of core glTF, without extensions.
 fn surface(json: &JsonMaterial) -> Result<Material, String> {
-    let factors = &json.pbr_metallic_roughness;
-    let (roughness, metallic) = (factors.roughness_factor.0, factors.metallic_factor.0);
+    let Factors { base_color: [red, green, blue, alpha], metallic, roughness } = factors(json)?;
     for (name, factor) in [("roughnessFactor", roughness), ("metallicFactor", metallic)] {
         if !(0.0..=1.0).contains(&factor) {
             return Err(format!("its {name} is {factor:?}, but must lie from 0 to 1"));
         }
     }
-    let [red, green, blue, alpha] = factors.base_color_factor.0;
     let color = [red, green, blue];
     if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
         return Err(format!("its baseColorFactor is {color:?}, but each part must lie from 0 to 1"));

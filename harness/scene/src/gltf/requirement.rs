@@ -5,7 +5,7 @@ use ::gltf::json::Root;
 use serde_json::{Map, Value};
 
 use super::error::{self, GltfError};
-use super::limits::KNOWN_EXTENSIONS;
+use super::limits::{KNOWN_EXTENSIONS, NOT_DRAWN};
 
 /// Extensions of images, animations and descriptions: nothing that is drawn here needs them. A
 /// texture in another format than PNG and JPEG is replaced by its factor.
@@ -34,8 +34,8 @@ pub(super) fn check(root: &Root) -> Result<(), GltfError> {
     // Extensions of storage were checked above at the meshes that use them, or are checked when the
     // data is read.
     let of_storage = |name: &str| name == DRACO || name == QUANTIZATION || MESHOPT.contains(&name);
-    let stops =
-        |name: &&str| !(KNOWN_EXTENSIONS.contains(name) || OF_WHAT_IS_NOT_DRAWN.contains(name) || of_storage(name));
+    let is_known = |name: &str| KNOWN_EXTENSIONS.contains(&name) || NOT_DRAWN.iter().any(|(known, _)| *known == name);
+    let stops = |name: &&str| !(is_known(name) || OF_WHAT_IS_NOT_DRAWN.contains(name) || of_storage(name));
     let unknown: Vec<String> = required().filter(stops).map(error::excerpt).collect();
     if unknown.is_empty() {
         Ok(())

@@ -13,11 +13,11 @@ use serde_json::{Map, Value};
 use super::error::excerpt;
 use super::extension::Extension;
 use super::lacking::{Lacking, User};
-use super::limits::KNOWN_EXTENSIONS;
-use super::material::{Known, Materials, extensions, nearest_index};
+use super::limits::{KNOWN_EXTENSIONS, NOT_DRAWN};
+use super::material::{self, Known, Materials, extensions, nearest_index};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
-use super::{extras, instances, light_node};
+use super::{extras, instances, light_node, specular_glossiness};
 use crate::{Material, Opening, TextureSlot};
 
 /// Lists all unsupported features of the file. Its references are known to be valid.
@@ -49,7 +49,8 @@ pub(super) fn lacking(
     if !root.animations.is_empty() && !moves {
         lacking.note("animations", root.animations.len().to_string(), "bodies are drawn at rest", User::FILE);
     }
-    for name in root.extensions_used.iter().filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())) {
+    let is_known = |name: &str| KNOWN_EXTENSIONS.contains(&name) || NOT_DRAWN.iter().any(|(known, _)| *known == name);
+    for name in root.extensions_used.iter().filter(|name| !is_known(name)) {
         if !lacking.has(EXTENSIONS, &quoted(name)) {
             lacking.note(EXTENSIONS, quoted(name), "not known", User::FILE);
         }
@@ -67,7 +68,8 @@ fn quoted(name: &str) -> String {
 fn unknown_extensions(all: Option<&Map<String, Value>>, user: User<'_>, lacking: &mut Lacking) {
     let names = all.into_iter().flat_map(Map::keys);
     for name in names.filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())) {
-        lacking.note(EXTENSIONS, quoted(name), "not known", user);
+        let instead = NOT_DRAWN.iter().find(|(known, _)| known == name).map_or("not known", |(_, instead)| instead);
+        lacking.note(EXTENSIONS, quoted(name), instead, user);
     }
 }
 
@@ -146,7 +148,7 @@ const TEXTURES: &str = "textures";
 
 /// Whether textures of this member are read.
 fn is_read(member: &str) -> bool {
-    TextureSlot::ALL.iter().any(|slot| slot.name() == member)
+    member == specular_glossiness::DIFFUSE_TEXTURE || TextureSlot::ALL.iter().any(|slot| slot.name() == member)
 }
 
 /// Names of the members of a material that refer to textures.
@@ -172,7 +174,7 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
     unknown_extensions(factors.extensions.as_ref().map(|all| &all.others), user, lacking);
 
     // 1 is also the default if a file omits the member, as files of clear bodies do.
-    let metallic = factors.metallic_factor.0;
+    let metallic = material::factors(json).map_or(0.0, |factors| factors.metallic);
     let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);

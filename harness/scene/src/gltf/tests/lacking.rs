@@ -106,8 +106,13 @@ fn what_is_no_dielectric_surface_is_named() {
         json!({"extras": {"lapidary": {"later": [1, 2]}}}),
         "extras: `later` in `extras.lapidary` of material `gem` (not known)",
     );
-    for name in ["KHR_materials_clearcoat", "KHR_materials_unlit", "KHR_materials_volume_scatter", "VENDOR_x"] {
-        one(json!({"extensions": {name: {}}}), &format!("extensions: `{name}` of material `gem` (not known)"));
+    for (name, instead) in [
+        ("KHR_materials_clearcoat", "the surface below is drawn alone"),
+        ("KHR_materials_unlit", "lights and shadows fall on it"),
+        ("KHR_materials_volume_scatter", "not known"),
+        ("VENDOR_x", "not known"),
+    ] {
+        one(json!({"extensions": {name: {}}}), &format!("extensions: `{name}` of material `gem` ({instead})"));
     }
     assert_eq!(of_material(json!({"doubleSided": true, "alphaMode": "OPAQUE"})), [""; 0]);
     // A transmissive material is not a metal, although glTF's default is one.

@@ -384,3 +384,18 @@ fn numbers_of_a_use_that_are_no_numbers() {
     };
     refused(&png(), sampler, "sampler 0: its wrapT is not one of glTF's, 10497, 33071 and 33648");
 }
+
+#[test]
+fn the_archived_form_of_a_material_is_read() {
+    let material = material(&png(), |d| {
+        let texture = d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].take();
+        d["materials"][0]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 9}, "roughnessFactor": 1});
+        let archived = json!({"diffuseFactor": [0.5, 0.25, 0.5, 1], "specularFactor": [0.04, 0.04, 0.04],
+            "glossinessFactor": 0.75, "diffuseTexture": texture});
+        d["materials"][0]["extensions"] = json!({"KHR_materials_pbrSpecularGlossiness": archived});
+        d["extensionsRequired"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+    });
+    assert_eq!(material.roughness, 0.25);
+    assert!(material.base_color.distance(Vec3::new(0.5, 0.25, 0.5)) < 1e-6, "{}", material.base_color);
+    assert!(material.texture(TextureSlot::BaseColor).is_some());
+}
