@@ -40,11 +40,13 @@ mod object;
 mod open;
 pub mod polyhedron;
 mod scene;
+pub mod shells;
 pub mod solver;
 pub mod spectrum;
 pub mod surfaces;
 pub mod texture;
 pub mod view;
+mod weld;
 
 pub use bounds::Bounds;
 pub use built_in::list::{BUILT_IN, BuiltIn, names};
