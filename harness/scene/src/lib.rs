@@ -39,6 +39,7 @@ pub mod normals;
 mod object;
 mod open;
 pub mod polyhedron;
+pub mod registration;
 mod scene;
 pub mod shells;
 pub mod solver;

@@ -40,6 +40,23 @@ impl Grid {
         })
     }
 
+    /// Returns the number of the nearest point within the tolerance of a position.
+    pub(crate) fn nearest(&self, position: DVec3) -> Option<usize> {
+        let (least, greatest) = (self.cell(position - self.tolerance), self.cell(position + self.tolerance));
+        let cells = (0..8).filter_map(|corner| {
+            let cell = [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { least[axis] } else { greatest[axis] });
+            self.cells.get(&cell)
+        });
+        let away = |number: usize| self.points[number].distance_squared(position);
+        let nearest = cells.flatten().copied().min_by(|&one, &other| away(one).total_cmp(&away(other)))?;
+        (away(nearest) <= self.tolerance * self.tolerance).then_some(nearest)
+    }
+
+    /// Returns the largest number of points in a cell.
+    pub(crate) fn fullest(&self) -> usize {
+        self.cells.values().map(Vec::len).max().unwrap_or_default()
+    }
+
     /// Adds a point and returns its number.
     pub(crate) fn add(&mut self, point: DVec3) -> usize {
         let number = self.points.len();
