@@ -44,6 +44,7 @@ mod scene;
 pub mod shells;
 pub mod solver;
 pub mod spectrum;
+pub mod stones;
 pub mod surfaces;
 pub mod texture;
 pub mod view;

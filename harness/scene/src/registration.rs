@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Quat};
+use glam::{DQuat, DVec3};
 
 use crate::{Copies, Mesh, Place};
 
@@ -33,7 +33,7 @@ pub struct Group {
 /// interpolated, which must then agree as well.
 ///
 /// Corners are compared, and what they enclose; vertex colours and texture coordinates are not: a group has those of its first.
-/// Where corners are off by more than f32 rounds, the shape is the mean of all.
+/// The shape is the mean of all, by the squares of their sizes over their noise, so that it has less noise than any.
 #[must_use]
 pub fn groups(meshes: &[&Mesh], noise: &[f64], is_smooth: &[bool]) -> Vec<Group> {
     let mut found: Vec<Found> = Vec::new();
@@ -64,55 +64,53 @@ pub fn groups(meshes: &[&Mesh], noise: &[f64], is_smooth: &[bool]) -> Vec<Group>
 /// A group as it is found.
 struct Found {
     reference: Reference,
-    members: Vec<(usize, DVec3, f64, Alignment)>,
-    /// Sum of the members' corners, in the first one's frame and unit.
+    members: Vec<Member>,
+    /// Weighted sum of the members' corners, in the first one's frame and unit, and of the weights.
     sums: Vec<DVec3>,
+    weight: f64,
+}
+
+struct Member {
+    number: usize,
+    centre: DVec3,
+    unit: f64,
+    rotation: DQuat,
+    /// Ratio of its size and the first one's, each in its own unit.
+    scale: f64,
 }
 
 impl Found {
     fn of(number: usize, form: Form) -> Self {
-        let (centre, unit, sums) = (form.centre, form.unit, form.points.clone());
-        let members = vec![(number, centre, unit, Alignment::identity(form.points.len()))];
-        Self { reference: Reference::of(form), members, sums }
+        let weight = form.noise.powi(-2);
+        let sums = form.points.iter().map(|point| weight * *point).collect();
+        let first = Member { number, centre: form.centre, unit: form.unit, rotation: DQuat::IDENTITY, scale: 1.0 };
+        Self { reference: Reference::of(form), members: vec![first], sums, weight }
     }
 
-    fn add(&mut self, number: usize, form: &Form, alignment: Alignment) {
-        for (sum, &partner) in self.sums.iter_mut().zip(&alignment.partners) {
-            *sum += alignment.rotation.inverse() * form.points[partner] / alignment.scale;
+    fn add(&mut self, number: usize, form: &Form, Alignment { rotation, scale, partners }: Alignment) {
+        let weight = form.noise.powi(-2);
+        self.weight += weight;
+        for (sum, partner) in self.sums.iter_mut().zip(partners) {
+            *sum += weight / scale * (rotation.inverse() * form.points[partner]);
         }
-        self.members.push((number, form.centre, form.unit, alignment));
+        self.members.push(Member { number, centre: form.centre, unit: form.unit, rotation, scale });
     }
 
     fn group(self, meshes: &[&Mesh]) -> Group {
-        let Self { reference, members, sums } = self;
+        let Self { reference, members, sums, weight } = self;
         let form = &reference.form;
-        let first = meshes[members[0].0];
-        let mut shape = Mesh { uvs: Vec::new(), ..first.clone() };
-        let count = members.len() as f64;
-        let origin = form.centre.as_vec3().as_dvec3();
+        let mut shape = meshes[members[0].number].clone();
         for (position, &place) in shape.positions.iter_mut().zip(&form.place_of_vertex) {
-            *position = if form.is_rounded {
-                (form.unit * sums[place] / count).as_vec3()
-            } else {
-                (position.as_dvec3() - origin).as_vec3()
-            };
+            *position = (form.unit / weight * sums[place]).as_vec3();
         }
-        shape.uvs.clone_from(&first.uvs);
-        // The middle of the shape's corners, in its own space.
-        let middle = if form.is_rounded { DVec3::ZERO } else { form.centre - origin };
-        let place = |(_, centre, unit, alignment): &(usize, DVec3, f64, Alignment)| {
-            let scale = alignment.scale * unit / form.unit;
-            let rotation = alignment.rotation;
-            let translation = *centre - scale * (rotation * middle);
-            Place {
-                rotation: if rotation == glam::DQuat::IDENTITY { Quat::IDENTITY } else { rotation.as_quat() },
-                scale: scale as f32,
-                translation: translation.as_vec3(),
-                ..Place::IDENTITY
-            }
+        let place = |member: &Member| Place {
+            rotation: member.rotation.as_quat(),
+            scale: (member.scale * member.unit / form.unit) as f32,
+            translation: member.centre.as_vec3(),
+            ..Place::IDENTITY
         };
         let places = members.iter().map(place).collect();
-        Group { copies: Copies { shape, places }, members: members.iter().map(|member| member.0).collect() }
+        Group { copies: Copies { shape, places }, members: members.iter().map(|member| member.number).collect() }
     }
 }
 

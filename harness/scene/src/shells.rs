@@ -33,6 +33,8 @@ pub struct Shells {
     pub open: Vec<Mesh>,
     /// What was mended.
     pub mends: Mends,
+    /// Distance within which corners were taken for one.
+    pub tolerance: f64,
 }
 
 /// What was mended of a mesh; all counts are 0 if nothing was.
@@ -135,7 +137,7 @@ impl Shells {
             let list = if component.is_closed { &mut solids } else { &mut open };
             list.push(part);
         }
-        Some(Self { solids, open, mends })
+        Some(Self { solids, open, mends, tolerance: surface.tolerance })
     }
 
     /// Closes those open components of which it is certain which facet is missing: their openings are flat or as narrow as

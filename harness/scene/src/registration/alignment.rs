@@ -30,13 +30,6 @@ pub(super) struct Alignment {
     pub(super) partners: Vec<usize>,
 }
 
-impl Alignment {
-    /// Returns that of a form with itself.
-    pub(super) fn identity(count: usize) -> Self {
-        Self { rotation: DQuat::IDENTITY, scale: 1.0, partners: (0..count).collect() }
-    }
-}
-
 /// A form with which others are compared.
 #[derive(Debug)]
 pub(super) struct Reference {

@@ -28,10 +28,8 @@ pub(super) struct Form {
     pub(super) centre: DVec3,
     /// Root mean square of the distances, in units of world space.
     pub(super) unit: f64,
-    /// Distance by which a corner may be off, in units of `unit`.
+    /// Distance by which a corner may be off, in units of `unit`, above 0.
     pub(super) noise: f64,
-    /// Whether that is more than f32 rounds.
-    pub(super) is_rounded: bool,
 }
 
 impl Form {
@@ -48,7 +46,7 @@ impl Form {
         let unit = (points.iter().map(|point| point.distance_squared(centre)).sum::<f64>() / count as f64).sqrt();
         let relative = noise / unit;
         // Written so that NaN fails.
-        if !(relative <= MOST_NOISE) {
+        if !(relative > 0.0 && relative <= MOST_NOISE) {
             return None;
         }
         points.iter_mut().for_each(|point| *point = (*point - centre) / unit);
@@ -64,18 +62,7 @@ impl Form {
         let mut triangles: Vec<[usize; 3]> = mesh.indices.chunks_exact(3).map(triangle).collect();
         triangles.sort_unstable();
         let normals = if is_smooth { normals(mesh, &place_of_vertex, count) } else { Vec::new() };
-        Some(Self {
-            points,
-            place_of_vertex,
-            normals,
-            order,
-            radii,
-            triangles,
-            centre,
-            unit,
-            noise: relative,
-            is_rounded: noise > TOLERANCE * largest,
-        })
+        Some(Self { points, place_of_vertex, normals, order, radii, triangles, centre, unit, noise: relative })
     }
 
     /// Returns the numbers of the corners at a distance from the middle, within a tolerance.
