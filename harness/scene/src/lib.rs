@@ -29,6 +29,7 @@ mod error;
 pub mod glb;
 pub mod gltf;
 pub mod harmonics;
+pub mod jewellery;
 pub mod layout;
 pub mod light;
 pub mod material;

@@ -59,8 +59,12 @@ pub(super) fn add_objects(
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
             material.thickness = thickness.min(f32::MAX);
         }
+        let diamond = materials.diamond(material_index);
         for (mesh, copies) in meshes_in_world {
-            let material = material.clone();
+            let mut material = material.clone();
+            if let Some(diamond) = diamond {
+                diamond.absorb(&mut material, copies.as_ref().map_or(&mesh, |copies| &copies.shape));
+            }
             let object = Object { name: name.clone(), mesh, material, copies };
             let kind = (material_index, object.mesh.uvs.is_empty());
             let other = of_kind.get(&kind).map(|place: &usize| &mut found[*place]);
