@@ -3,6 +3,8 @@
 use super::Rung;
 use super::numbers::{short, triple};
 use glam::Vec3;
+use lapidary_scene::jewellery::Guess;
+use lapidary_scene::stones::StoneNote;
 use std::fmt;
 
 /// Number of clear bodies around a point that the rungs scene-HITS follow.
@@ -198,6 +200,14 @@ pub enum Note {
     },
     /// A camera that sees no body.
     NothingInView,
+    /// What was mended, parted or joined of clear bodies.
+    Stones(StoneNote),
+    /// Bodies that look like stones or metals, and are not marked so.
+    Unmarked(Guess),
+    /// Bodies that were given the material of what they look like.
+    Guessed(Guess),
+    /// Nothing looks like an unmarked stone or metal, though the guess was asked for.
+    NothingGuessed,
     /// An environment with negative radiance.
     NegativeRadiance {
         /// File of the environment.
@@ -255,11 +265,16 @@ impl Note {
             | Self::NotCompared { .. }
             | Self::TooDeep { .. }
             | Self::LampInside { .. }
+            | Self::Unmarked(..)
+            | Self::NothingGuessed
+            | Self::Stones(StoneNote::TooLarge { .. })
             | Self::NotClear { .. } => Gravity::LeftOut,
             Self::Black { .. } | Self::ClipsToWhite { .. } => Gravity::Exposure,
             Self::StoppedEarly { .. }
             | Self::Solved { .. }
             | Self::HardEdges { .. }
+            | Self::Stones(..)
+            | Self::Guessed(..)
             | Self::NegativeRadiance { .. } => Gravity::Figure,
         }
     }
@@ -402,6 +417,16 @@ impl fmt::Display for Note {
                 "nothing is in view: the camera sees no body; give another direction with --from, such as --from 60,20, or mend the file's \
                  camera",
             ),
+            Self::Stones(note) => note.fmt(f),
+            Self::Unmarked(guess) if guess.options().is_empty() => write!(f, "{guess}; no preset is of that name"),
+            Self::Unmarked(guess) => write!(f, "{guess}; --jewellery makes it one, or {}", guess.options()),
+            Self::Guessed(guess) if guess.options().is_empty() => {
+                write!(f, "{guess}; drawn as the file says, since no preset is of that name")
+            }
+            Self::Guessed(guess) => write!(f, "{guess}; drawn so, as by {}", guess.options()),
+            Self::NothingGuessed => f.write_str(
+                "--jewellery: nothing looks like a stone or a metal that is not marked as one; name bodies by --material",
+            ),
             Self::NegativeRadiance { file, pixels, least } => write!(
                 f,
                 "{file}: {pixels} pixels have negative parts, down to {least:.1e}, which count as 0"
@@ -413,6 +438,26 @@ impl fmt::Display for Note {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn guesses_and_changed_stones_are_lines_as_well() {
+        let look = lapidary_scene::jewellery::Look::Stone("ruby");
+        let guess = Guess {
+            look,
+            bodies: vec![0, 1],
+            first: "hare".to_owned(),
+            material: "Gem".to_owned(),
+            evidence: vec!["a blend".to_owned()],
+            named: vec!["Gem".to_owned()],
+        };
+        let line = Note::Unmarked(guess.clone()).to_string();
+        let what = "2 objects, first `hare` of `Gem`: looks like a stone, ruby (a blend)";
+        assert_eq!(line, format!("{what}; --jewellery makes it one, or --material 'Gem=ruby'"));
+        assert_eq!(Note::Guessed(guess).to_string(), format!("{what}; drawn so, as by --material 'Gem=ruby'"));
+        let joined = StoneNote::Joined { first: "a".to_owned(), bodies: 2, copies: 3 };
+        assert_eq!(Note::Stones(joined.clone()).to_string(), joined.to_string());
+        assert!(!Note::NothingGuessed.to_string().contains('\n'));
+    }
 
     #[test]
     fn a_note_is_a_line_with_its_figures() {

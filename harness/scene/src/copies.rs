@@ -4,6 +4,10 @@ use glam::{DMat4, DQuat, DVec3, Mat3, Quat, Vec3, Vec4};
 
 use super::{Material, Mesh};
 
+/// Maximum number of vertices, and of triangle corners, in one mesh of copies. The longest list built from them is a hierarchy
+/// with at most a node of 64 bytes for each triangle: 85 MiB, which any device holds in one buffer (WebGPU guarantees 128 MiB).
+pub const MOST_JOINED: usize = 1 << 22;
+
 /// One shape and the places at which a body shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Copies {

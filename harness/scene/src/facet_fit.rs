@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::hull::{Hull, volume};
 use crate::polyhedron::{MAX_PLANES, Plane};
-use crate::{Bounds, Mesh};
+use crate::{Bounds, Mesh, registration};
 use plane::{fitted, reach, width};
 use regions::{Region, Triangles};
 use symmetry::Facet;
@@ -34,6 +34,10 @@ const TOLERANCES: i32 = 40;
 const COARSEST: f64 = 1.0 / 64.0;
 /// Number of tolerances in a row, 2.8 to 1, by which the facets are the same: those of the stone, not those of rounding.
 const STEADY: usize = 4;
+/// Largest number of triangles of a mesh, and of corners of its hull, of which facets are looked for: of a cut stone, whose facets are
+/// cut into many triangles each, and few of whose corners rounding puts on the hull.
+const MOST_TRIANGLES: usize = 1 << 16;
+const MOST_CORNERS: usize = 1 << 12;
 /// Distance of a corner from a plane that is averaged over a symmetry, in half steps, up to which it is rounding: √3 along a cube's
 /// diagonal, and as much for what the noise is estimated by.
 const AVERAGED: f64 = 3.5;
@@ -86,7 +90,14 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
     }
     let bounds = Bounds::of(mesh.positions.iter().copied());
     let size = f64::from(2.0 * bounds.radius());
+    if mesh.triangle_count() > MOST_TRIANGLES {
+        return Err(NotRecovered::Large);
+    }
     let hull = Hull::of(&mesh.positions).ok_or(NotRecovered::Flat)?;
+    // A hull of c corners has 2 c - 4 triangles.
+    if hull.triangles.len() > 2 * MOST_CORNERS {
+        return Err(NotRecovered::Large);
+    }
     // About the centroid, through which the axes of all symmetries go.
     let (whole, centre) = volume(&mesh.positions, hull.triangles.iter().copied());
     let triangles = mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| corners[k] as usize));
@@ -110,14 +121,16 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
     if moved > MOVED * noise {
         return Err(NotRecovered::Unlike { moved: moved / size });
     }
-    let mesh = solid::between(&planes, centre).ok_or(NotRecovered::Open)?;
+    let solid = solid::between(&planes, centre).ok_or(NotRecovered::Open)?;
+    // Of a lattice along the axes, whose rounding is alike in corners that are alike, distances tell too little.
+    let half_step = noise.max(registration::noise(mesh) / 3f64.sqrt());
     let order = symmetry.map_or(1.0, |symmetry| f64::from(symmetry.order()).sqrt());
     let facets = facets.iter().zip(&planes).map(|(facet, plane)| RecoveredFacet {
         plane: Plane { normal: plane.normal, distance: plane.distance + plane.normal.dot(centre) },
-        uncertainty: 2.0 * noise / width(&facet.points, plane.normal) / order,
+        uncertainty: 2.0 * half_step / width(&facet.points, plane.normal) / order,
     });
     Ok(Recovered {
-        mesh,
+        mesh: solid,
         facets: facets.collect(),
         volume: outside,
         noise: noise / size,

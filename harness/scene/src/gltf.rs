@@ -27,6 +27,7 @@ mod buffers;
 mod camera_node;
 mod container;
 mod decode;
+mod diamond;
 mod error;
 mod extension;
 mod extras;

@@ -20,6 +20,8 @@ pub struct Material {
     /// Base colour factor, linear RGB, each 0 to 1. Light that crosses the surface is multiplied by
     /// it.
     pub base_color: Vec3,
+    /// Share of an opaque surface that is bare metal, 0 to 1: `metallicFactor`.
+    pub metallic: f32,
     /// How much of what is behind the surface it covers; `None` if all of it.
     pub coverage: Option<Coverage>,
     /// Factor of the base colour, in red, green and blue, and of the coverage, in alpha.
@@ -141,6 +143,7 @@ impl Material {
         Self {
             name: "default".to_owned(),
             base_color: Vec3::ONE,
+            metallic: 0.0,
             coverage: None,
             base_color_texture: None,
             normal_texture: None,

@@ -5,12 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
+use super::weld::{TOLERANCE, weld};
 use super::{Bounds, Mesh};
-
-/// Distance, relative to the mesh's largest coordinate, below which corners count as one: four
-/// times the 2^-24 by which f32 rounds. If a surface is a grid that closes upon itself, its seam is
-/// open by that much.
-const TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
 
 /// Defects of a mesh as the surface of a solid. All counts are 0 for a sound one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -281,30 +277,6 @@ impl Welded {
         // eightfold: that is if it is an eighth as wide as the mesh.
         self.triangles.iter().flat_map(|triangle| triangle.corners).all(|corner| height(corner) <= 8.0 * self.tolerance)
     }
-}
-
-/// Returns the places of positions, and for each position the number of its place.
-fn weld(positions: impl Iterator<Item = DVec3>, tolerance: f64) -> (Vec<DVec3>, Vec<usize>) {
-    // A cell is twice as wide as the tolerance, so that near positions lie in one of the eight
-    // cells around one of its corners.
-    let cell =
-        |position: DVec3| (position / (2.0 * tolerance).max(f64::MIN_POSITIVE)).floor().to_array().map(|x| x as i64);
-    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-    let mut kept: Vec<DVec3> = Vec::new();
-    let number = |position: DVec3| {
-        let (least, greatest) = (cell(position - tolerance), cell(position + tolerance));
-        let near = (0..8).find_map(|corner| {
-            let place = [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { least[axis] } else { greatest[axis] });
-            cells.get(&place)?.iter().copied().find(|&number| kept[number].distance(position) <= tolerance)
-        });
-        near.unwrap_or_else(|| {
-            kept.push(position);
-            cells.entry(cell(position)).or_default().push(kept.len() - 1);
-            kept.len() - 1
-        })
-    };
-    let numbers = positions.map(number).collect();
-    (kept, numbers)
 }
 
 #[cfg(test)]

@@ -7,8 +7,9 @@ use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Sc
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
+use lapidary_scene::jewellery::{self, Guess};
 use lapidary_scene::normals::Normals;
-use lapidary_scene::{Environment, Object, Opening, PRESETS, Preset, Scene};
+use lapidary_scene::{Environment, Material, Object, Opening, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -30,6 +31,13 @@ pub(super) struct Asked {
     /// several. `cook list --materials` names them.
     #[arg(long, value_name = "[WHICH=]PRESET", value_parser = parse_material)]
     material: Vec<(Option<String>, &'static Preset)>,
+    /// Give bodies that look like stones or metals, and are not marked so, the preset of what they look like: by their names, in
+    /// several languages, and by their shapes. Each choice is said. Bodies that --material names keep what it gives.
+    #[arg(long)]
+    jewellery: bool,
+    /// Draw the clear stones of a file with its very triangles: neither mended, parted, joined nor given exact facets.
+    #[arg(long)]
+    as_modelled: bool,
     /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
@@ -103,20 +111,32 @@ impl Asked {
         files
     }
 
-    /// Opens the scene, with the materials and normals that were asked for.
-    pub(super) fn open(&self) -> Result<Scene, Failure> {
+    /// Opens the scene, with the materials and normals that were asked for, and the stones of a file mended, parted and joined
+    /// to copies. The notes say what was changed, and, if `hints`, what looks like an unmarked stone or metal.
+    pub(super) fn open(&self, hints: bool) -> Result<(Scene, Vec<Note>), Failure> {
         let mut scene = Scene::open_as(&self.scene, &Opening { camera: self.camera.clone(), time: self.time })?;
-        refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
-        // By the names that the file gives: a preset has one of its own.
-        let names = Names::of(&scene);
-        // Those of single nodes come last, so that they count.
-        let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
-        for (node, preset) in all.into_iter().chain(single) {
-            let which = node.as_ref().map(|which| named_bodies(&names, which, "--material")).transpose()?;
-            for (number, object) in scene.objects.iter_mut().enumerate() {
-                if which.as_ref().is_none_or(|which| which[number]) {
-                    *object = preset.on(object);
-                }
+        let mut presets = self.presets(&scene)?;
+        let mut notes = self.guessed(&scene, &mut presets, hints);
+        // A preset fits itself to a stone, which its mesh may hold many of: first that bodies are clear, and of one material.
+        for (object, preset) in scene.objects.iter_mut().zip(&presets) {
+            if let Some(preset) = preset {
+                object.material = Material { name: preset.name.to_owned(), ..preset.material(1.0) };
+            }
+        }
+        let is_file = !Scene::sources(&self.scene).is_empty();
+        let stays = |object: &Object| self.rung.iter().any(|(node, _)| node.as_ref() == Some(&object.name));
+        let count = scene.objects.len();
+        let origins: Vec<usize> = if is_file && !self.as_modelled {
+            let parting = scene.part_stones(stays);
+            notes.extend(parting.notes.into_iter().map(Note::Stones));
+            notes.extend(scene.recover_stones(|_| false).into_iter().map(Note::Stones));
+            parting.origins
+        } else {
+            (0..count).collect()
+        };
+        for (object, origin) in scene.objects.iter_mut().zip(origins) {
+            if let Some(preset) = presets[origin] {
+                *object = preset.on(object);
             }
         }
         if let Some(normals) = self.normals {
@@ -130,7 +150,41 @@ impl Asked {
             }
             clear.into_iter().for_each(|object| object.material.normals = normals);
         }
-        Ok(scene)
+        Ok((scene, notes))
+    }
+
+    /// Returns the preset that `--material` gives each body.
+    fn presets(&self, scene: &Scene) -> Result<Vec<Option<&'static Preset>>, Failure> {
+        refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
+        let names = Names::of(scene);
+        let mut presets = vec![None; scene.objects.len()];
+        // Those of single nodes come last, so that they count.
+        let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
+        for (node, preset) in all.into_iter().chain(single) {
+            let which = node.as_ref().map(|which| named_bodies(&names, which, "--material")).transpose()?;
+            for (number, of_body) in presets.iter_mut().enumerate() {
+                if which.as_ref().is_none_or(|which| which[number]) {
+                    *of_body = Some(*preset);
+                }
+            }
+        }
+        Ok(presets)
+    }
+
+    /// Adds the presets of what unmarked bodies look like, if that was asked for, and returns notes on them.
+    fn guessed(&self, scene: &Scene, presets: &mut [Option<&'static Preset>], hints: bool) -> Vec<Note> {
+        if !self.jewellery && !hints {
+            return Vec::new();
+        }
+        let given: Vec<bool> = presets.iter().map(Option::is_some).collect();
+        let guesses: Vec<Guess> = jewellery::guesses(scene, |body| given[body]);
+        if !self.jewellery {
+            return guesses.into_iter().map(Note::Unmarked).collect();
+        }
+        for (guess, preset) in guesses.iter().filter_map(|guess| Some((guess, guess.look.preset()?))) {
+            guess.bodies.iter().for_each(|&body| presets[body] = Some(preset));
+        }
+        if guesses.is_empty() { vec![Note::NothingGuessed] } else { guesses.into_iter().map(Note::Guessed).collect() }
     }
 
     /// Returns the rung that was asked for all objects, or each material's own by default, and those of

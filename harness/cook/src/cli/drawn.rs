@@ -223,11 +223,12 @@ impl Drawn {
     /// Opens the scene, and makes the settings and the environment's warnings. `others` are further
     /// options that were given.
     pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
-        let mut scene = self.asked.open()?;
+        let (mut scene, mut notes) = self.asked.open(false)?;
         if let Some((polar, azimuth)) = self.from {
             scene = scene.seen_from(polar, azimuth);
         }
-        let (asked, notes) = self.asked.settings(&scene)?;
+        let (asked, more) = self.asked.settings(&scene)?;
+        notes.extend(more);
         let curvature = self.diffuse.as_ref().and_then(|options| options.curvature);
         let shadows = self.diffuse.as_ref().and_then(|options| options.shadows);
         let extinction_scale = self.optical_path.as_ref().and_then(|options| options.extinction_scale);

@@ -154,8 +154,9 @@ impl<'a> Document<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let scene = arguments.asked.open()?;
-    let (settings, notes) = arguments.asked.settings(&scene)?;
+    let (scene, mut notes) = arguments.asked.open(true)?;
+    let (settings, more) = arguments.asked.settings(&scene)?;
+    notes.extend(more);
     let mut plan = Plan::of(&scene, &settings)?;
     plan.notes.splice(..0, notes);
     if arguments.json {

@@ -25,6 +25,9 @@ pub enum NotRecovered {
         /// Depth of the corner, as a share of the diagonal of the bounds.
         depth: f64,
     },
+    /// The mesh is larger than that of any cut stone.
+    #[error("has more triangles than a cut stone")]
+    Large,
     /// No tolerance groups the triangles into few facets.
     #[error("has no facets that are few and plane: it is round, or has more than {MAX_PLANES}")]
     Round,

@@ -26,7 +26,7 @@ pub const MAX_OBJECTS: u64 = 1 << 16;
 pub const MAX_COORDINATE: f32 = 1e9;
 
 /// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 9] = [
+pub const KNOWN_EXTENSIONS: [&str; 10] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
@@ -36,6 +36,7 @@ pub const KNOWN_EXTENSIONS: [&str; 9] = [
     "KHR_lights_punctual",
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
+    "WEBGI_materials_diamond",
 ];
 
 /// Extensions of materials that are known and not drawn, and what is drawn instead.

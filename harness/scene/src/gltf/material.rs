@@ -1,6 +1,6 @@
 //! Materials of a file: base colour, roughness, `KHR_materials_ior`, `KHR_materials_transmission`,
 //! `KHR_materials_volume`, `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, the archived
-//! `KHR_materials_pbrSpecularGlossiness`, and
+//! `KHR_materials_pbrSpecularGlossiness`, `WEBGI_materials_diamond` (`gltf/diamond.rs`), and
 //! `extras.lapidary` for properties that glTF cannot express (`gltf/extras.rs`). Textures are read by
 //! `gltf/texture.rs`. All other properties of a material are listed by `gltf/survey.rs`.
 
@@ -15,6 +15,7 @@ use glam::Vec3;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
+use super::diamond::Diamond;
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::extras;
@@ -103,6 +104,12 @@ impl<'a> Materials<'a> {
         Ok(known.textured.insert(material).clone())
     }
 
+    /// Returns what a vendor's mark says of the stone of material `index`, which was read.
+    pub(super) fn diamond(&self, index: Option<usize>) -> Option<Diamond> {
+        let json = index.and_then(|index| self.root.materials.get(index))?;
+        Diamond::of(extensions(json)).ok().flatten()
+    }
+
     /// Materials read so far, with their index and JSON.
     pub(super) fn read(&self) -> impl Iterator<Item = (usize, &'a JsonMaterial, &Known)> {
         let root = self.root;
@@ -113,6 +120,9 @@ impl<'a> Materials<'a> {
 /// References of a material to textures that are read.
 fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
     let mut found = Vec::new();
+    if Diamond::of(extensions(json))?.is_some() {
+        return Ok(found);
+    }
     let archived = Extension::of(extensions(json), specular_glossiness::NAME)?;
     if let Some(value) = archived.member(specular_glossiness::DIFFUSE_TEXTURE) {
         found.push(reference(TextureSlot::BaseColor, specular_glossiness::DIFFUSE_TEXTURE, value)?);
@@ -170,7 +180,8 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     volume(Extension::of(all, "KHR_materials_volume")?, &mut material)?;
 
     if let Some(ior) = ior {
-        let is_clear = material.transmission > 0.0;
+        // A vendor's mark gives an index of its own.
+        let is_clear = material.transmission > 0.0 && Diamond::of(all)?.is_none();
         material.ior = if is_clear || ior < 0.0 { index(ior)? } else { nearest_index(ior) };
     }
     let dispersion = Extension::of(all, "KHR_materials_dispersion")?.number("dispersion")?;
@@ -185,6 +196,10 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     }
     if let Some(extras) = extras::lapidary(json)? {
         extras.apply(&mut material, ior, dispersion)?;
+    }
+    if let Some(diamond) = Diamond::of(all)? {
+        diamond.apply(&mut material);
+        return Ok(material);
     }
     if material.medium.is_none() {
         material.medium = medium::derived(&material)?;
@@ -231,7 +246,7 @@ fn surface(json: &JsonMaterial) -> Result<Material, String> {
     }
     let double_sided = json.double_sided;
     let base_color = Vec3::from_array(color);
-    Ok(Material { base_color, coverage, normal_scale, roughness, double_sided, ..Material::standard() })
+    Ok(Material { base_color, metallic, coverage, normal_scale, roughness, double_sided, ..Material::standard() })
 }
 
 fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> {

@@ -16,14 +16,9 @@ use super::instances::Instances;
 use super::limits::MAX_COORDINATE;
 use super::material::Materials;
 use super::nodes::ShownNode;
-use crate::copies::Copies;
+use crate::copies::{Copies, MOST_JOINED};
 use crate::normals::{Averaging, Cofactors, shared_normals};
 use crate::{Mesh, Object};
-
-/// Maximum number of vertices, and of triangle corners, in one mesh of instances. The longest list
-/// built from them is a hierarchy with at most a node of 64 bytes for each triangle: 85 MiB, which
-/// any device holds in one buffer (WebGPU guarantees 128 MiB).
-const MOST_JOINED: usize = 1 << 22;
 
 /// Adds an object for each material of the triangle primitives that `node` shows: exporters part one body's triangles over
 /// several. All instances of a primitive form one mesh, or several if one would be too large for a device.
@@ -64,8 +59,12 @@ pub(super) fn add_objects(
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
             material.thickness = thickness.min(f32::MAX);
         }
+        let diamond = materials.diamond(material_index);
         for (mesh, copies) in meshes_in_world {
-            let material = material.clone();
+            let mut material = material.clone();
+            if let Some(diamond) = diamond {
+                diamond.absorb(&mut material, copies.as_ref().map_or(&mesh, |copies| &copies.shape));
+            }
             let object = Object { name: name.clone(), mesh, material, copies };
             let kind = (material_index, object.mesh.uvs.is_empty());
             let other = of_kind.get(&kind).map(|place: &usize| &mut found[*place]);

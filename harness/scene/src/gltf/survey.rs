@@ -10,6 +10,7 @@ use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use serde_json::{Map, Value};
 
+use super::diamond::Diamond;
 use super::error::excerpt;
 use super::extension::Extension;
 use super::lacking::{Lacking, User};
@@ -178,6 +179,12 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
     let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
+    }
+    if let Ok(Some(diamond)) = Diamond::of(extensions(json))
+        && material.ior != diamond.index as f32
+    {
+        let what = format!("`refractiveIndex` {:?}", diamond.index);
+        lacking.note("index of refraction", what, if material.ior == 1.0 { "drawn as 1" } else { "drawn as 4" }, user);
     }
     let ior = Extension::of(extensions(json), "KHR_materials_ior").and_then(|ior| ior.number("ior")).ok().flatten();
     if let Some(ior) = ior.filter(|ior| material.transmission == 0.0 && nearest_index(*ior) != *ior as f32) {

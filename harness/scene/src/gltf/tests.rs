@@ -3,6 +3,7 @@
 use glam::Quat;
 use serde_json::{Value, json};
 
+use super::diamond::NAME as DIAMOND;
 use super::*;
 use crate::normals::FALLBACK_NORMAL;
 use crate::{Dispersion, Material, Medium, Mineral, glb};
@@ -15,6 +16,7 @@ mod head;
 mod instancing;
 mod lacking;
 mod lights;
+mod marked_stones;
 mod refusals;
 mod refused_data;
 mod sources;
@@ -264,6 +266,7 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         diffuse_transmission: 0.5,
         diffuse_transmission_color: Vec3::new(0.5, 0.0, 1.0),
         thickness: 3.0,
+        metallic: 1.0,
         roughness: 0.25,
         sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
         medium: Some(Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.0))),
@@ -283,7 +286,8 @@ fn what_a_material_leaves_out_has_gltfs_default() {
     for extensions in [extensions, none, tiny, json!({})] {
         for extras in [json!({}), json!([1, {"lapidary": 2}]), json!("text"), json!({"lapidary": {}}), Value::Null] {
             let material = material_of(json!({"name": "default", "extensions": extensions, "extras": extras}));
-            assert_eq!(material.unwrap(), Material::standard(), "{extensions} {extras}");
+            let expected = Material { metallic: 1.0, ..Material::standard() };
+            assert_eq!(material.unwrap(), expected, "{extensions} {extras}");
         }
     }
 }

@@ -1,0 +1,201 @@
+//! What unmarked bodies look like: exporters write a stone as white plastic, as a blend, or as a pane, and metals under any name.
+
+use std::fmt;
+
+use glam::Vec3;
+
+use crate::{Object, Preset, Scene};
+
+mod cut;
+mod words;
+
+use cut::Cut;
+use words::Words;
+
+/// Least metallicFactor of a metal.
+const METALLIC: f32 = 0.5;
+/// Least share of its brightest part by which a colour is one: less is grey.
+const SATURATION: f32 = 0.5;
+
+/// What a body looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// A clear stone, with the name of its preset.
+    Stone(&'static str),
+    /// A metal, with the name of the preset that it would have.
+    Metal(&'static str),
+}
+
+impl Look {
+    /// Returns the preset that makes a body what it looks like; `None` if there is none of that name.
+    #[must_use]
+    pub fn preset(self) -> Option<&'static Preset> {
+        let (Self::Stone(name) | Self::Metal(name)) = self;
+        Preset::named(name)
+    }
+}
+
+impl fmt::Display for Look {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stone(name) => write!(f, "a stone, {name}"),
+            Self::Metal(name) => write!(f, "a metal, {name}"),
+        }
+    }
+}
+
+/// Bodies of one material that look alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guess {
+    /// What they look like.
+    pub look: Look,
+    /// Numbers of the bodies.
+    pub bodies: Vec<usize>,
+    /// Name of the first body, and of the material.
+    pub first: String,
+    /// Name of the material.
+    pub material: String,
+    /// Why the first one looks so, as clauses.
+    pub evidence: Vec<String>,
+    /// Names for the option `--material`: the material, or the nodes if bodies of the material look different.
+    pub named: Vec<String>,
+}
+
+impl Guess {
+    /// Returns the options that make the bodies what they look like; empty if there is no preset for it.
+    #[must_use]
+    pub fn options(&self) -> String {
+        let Some(preset) = self.look.preset() else { return String::new() };
+        let option = |name: &String| format!("--material '{}={}'", name.replace('\'', r"'\''"), preset.name);
+        self.named.iter().map(option).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl fmt::Display for Guess {
+    /// Writes a line: ``object `Gem`: looks like a stone, diamond (its name says `gem`, closed and convex, 73 facets)``.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.bodies.len() {
+            1 => write!(f, "object `{}`", self.first)?,
+            count => write!(f, "{count} objects, first `{}`", self.first)?,
+        }
+        write!(f, " of `{}`: looks like {} ({})", self.material, self.look, self.evidence.join(", "))
+    }
+}
+
+/// Returns what the bodies of a scene look like that are marked as neither clear with an inside nor scattering, but for those
+/// that are `given` a material. Bodies that look like nothing in particular are left out.
+///
+/// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex, with flat
+/// facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
+#[must_use]
+pub fn guesses(scene: &Scene, given: impl Fn(usize) -> bool) -> Vec<Guess> {
+    let looks: Vec<Option<(Look, Vec<String>)>> = scene
+        .objects
+        .iter()
+        .enumerate()
+        .map(|(number, object)| if given(number) { None } else { look(object) })
+        .collect();
+    let mut found: Vec<Guess> = Vec::new();
+    for (number, (object, look)) in scene.objects.iter().zip(&looks).enumerate() {
+        let Some((look, evidence)) = look else { continue };
+        let same = found.iter_mut().find(|guess| guess.look == *look && guess.material == object.material.name);
+        match same {
+            Some(guess) => guess.bodies.push(number),
+            None => found.push(Guess {
+                look: *look,
+                bodies: vec![number],
+                first: object.name.clone(),
+                material: object.material.name.clone(),
+                evidence: evidence.clone(),
+                named: Vec::new(),
+            }),
+        }
+    }
+    for guess in &mut found {
+        let of_material = scene.objects.iter().filter(|object| object.material.name == guess.material).count();
+        // A node of the material's name would be meant instead.
+        let is_node = scene.objects.iter().any(|object| object.name == guess.material);
+        if of_material == guess.bodies.len() && !is_node {
+            guess.named.push(guess.material.clone());
+            continue;
+        }
+        for &body in &guess.bodies {
+            let name = &scene.objects[body].name;
+            if !guess.named.contains(name) {
+                guess.named.push(name.clone());
+            }
+        }
+    }
+    found
+}
+
+/// Returns what a body looks like, and why.
+fn look(object: &Object) -> Option<(Look, Vec<String>)> {
+    let material = &object.material;
+    if material.has_clear_inside() || material.scatters() || object.mesh.indices.is_empty() {
+        return None;
+    }
+    let words = Words::of([&object.name, &material.name]);
+    let says = |word: &str| format!("its name says `{word}`");
+    let is_metallic = material.is_opaque() && material.metallic >= METALLIC;
+    // What is named a metal is one, unless it is named a stone as well.
+    let is_named_metal = words.metal.is_some() && words.stone.is_none();
+    if !is_named_metal {
+        let cut = Cut::of(object.shape());
+        let by_name = words.stone.as_ref().filter(|_| cut.is_closed() && (cut.is_faceted() || cut.is_convex()));
+        if by_name.is_some() || cut.is_stone() {
+            let name = by_name.map(|(word, _)| says(word));
+            let how = match () {
+                () if material.is_clear() => Some("clear without a thickness".to_owned()),
+                () if material.coverage.is_some() => Some("a blend".to_owned()),
+                () => None,
+            };
+            let preset = words.stone.as_ref().and_then(|(_, preset)| *preset).unwrap_or_else(|| of_color(object));
+            return Some((Look::Stone(preset), name.into_iter().chain([cut.to_string()]).chain(how).collect()));
+        }
+    }
+    let (word, name) = words.metal.map_or((None, None), |(word, name)| (Some(word), Some(name)));
+    // A short word that means something else in other languages counts with the factor alone.
+    let is_sure = word.as_ref().is_some_and(|word| !words::is_ambiguous(word));
+    if !material.is_opaque() || !(is_metallic || is_sure) {
+        return None;
+    }
+    let evidence = word.map(|word| says(&word)).into_iter();
+    let factor = is_metallic.then(|| format!("metallicFactor {}", material.metallic));
+    let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| metal_of_color(material.base_color));
+    Some((Look::Metal(name), evidence.chain(factor).collect()))
+}
+
+/// Returns the preset of a stone's colour, which its base colour or its attenuation tells.
+fn of_color(object: &Object) -> &'static str {
+    let material = &object.material;
+    let color = material.base_color * if material.absorbs() { material.attenuation_color } else { Vec3::ONE };
+    let [red, green, blue] = color.to_array();
+    let most = color.max_element();
+    if most <= 0.0 || most - color.min_element() < SATURATION * most {
+        return "diamond";
+    }
+    // Yellow, pink and turquoise stones have no preset.
+    let is_alone = |part: f32, others: [f32; 2]| others.iter().all(|other| *other <= (1.0 - SATURATION) * part);
+    match () {
+        () if is_alone(red, [green, blue]) => "ruby",
+        () if is_alone(green, [red, blue]) => "emerald",
+        () if is_alone(blue, [red, green]) => "sapphire",
+        () => "diamond",
+    }
+}
+
+/// Returns the metal of a colour, linear RGB: gold and copper have less than half as much blue as red, copper less green as
+/// well, and rose gold is paler.
+fn metal_of_color(color: Vec3) -> &'static str {
+    let [red, green, blue] = color.to_array();
+    match () {
+        () if blue < 0.5 * red && green < 0.6 * red => "copper",
+        () if blue < 0.5 * red => "gold",
+        () if blue < 0.85 * red && green < 0.85 * red => "rose gold",
+        () => "silver",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,189 @@
+use super::*;
+use crate::cuts::{
+    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
+};
+use crate::surfaces::{sphere, torus};
+use crate::{Averaging, Camera, Coverage, Material, Mesh};
+
+fn brilliant() -> Mesh {
+    round_brilliant(&BrilliantParameters::TOLKOWSKY).unwrap().to_mesh(Averaging::Angle)
+}
+
+fn scene(objects: Vec<Object>) -> Scene {
+    let camera = Camera::framing(crate::object::vertices(&objects), Vec3::Z, 0.5);
+    Scene { name: "ring".to_owned(), objects, lights: Vec::new(), light_radii: Vec::new(), camera, lacking: Vec::new() }
+}
+
+fn plastic(name: &str) -> Material {
+    Material { name: name.to_owned(), ..Material::standard() }
+}
+
+fn metal(name: &str, color: Vec3) -> Material {
+    Material { metallic: 1.0, base_color: color, ..plastic(name) }
+}
+
+fn looks(name: &str, mesh: Mesh, material: Material) -> Option<Look> {
+    look(&Object::new(name, mesh, material)).map(|(look, _)| look)
+}
+
+#[test]
+fn a_cut_stone_is_told_by_its_shape_however_it_is_written() {
+    let ways = [
+        plastic("Material.001"),
+        Material { coverage: Some(Coverage { share: 0.3, cutoff: None }), ..plastic("m") },
+        Material { transmission: 1.0, ..plastic("glass") },
+        metal("mirror", Vec3::ONE),
+    ];
+    let step = step_cut(&StepCutParameters::EMERALD).unwrap().to_mesh(Averaging::Angle);
+    for way in ways {
+        for cut in [brilliant(), step.clone()] {
+            assert_eq!(looks("node 7", cut, way.clone()), Some(Look::Stone("diamond")), "{}", way.name);
+        }
+    }
+    // What is marked already is not guessed.
+    assert_eq!(looks("gem", brilliant(), Material { transmission: 1.0, thickness: 1.0, ..plastic("gem") }), None);
+    let mut open = brilliant();
+    open.indices.drain(..30);
+    assert_eq!(looks("node 7", open, plastic("m")), None);
+}
+
+#[test]
+fn other_shapes_are_stones_only_by_name() {
+    let pentagon = || prism(&PrismParameters::PENTAGONAL).unwrap().to_mesh(Averaging::Angle);
+    let shapes = [octahedron().unwrap().to_mesh(Averaging::Angle), sphere(1.0, 24), pentagon()];
+    for mesh in shapes {
+        assert_eq!(looks("thing", mesh.clone(), plastic("m")), None);
+        assert_eq!(looks("Gem.003", mesh.clone(), plastic("m")), Some(Look::Stone("diamond")));
+        assert_eq!(looks("thing", mesh, plastic("czerwony kamień")), Some(Look::Stone("diamond")));
+    }
+    // A ring is no stone, whatever its name.
+    assert_eq!(looks("diamond ring", torus(2.0, 0.3, 40, 20), plastic("m")), None);
+}
+
+#[test]
+fn a_drum_of_many_sides_is_no_stone() {
+    let side = |k: u32| std::f32::consts::TAU * k as f32 / 24.0;
+    let mut positions: Vec<Vec3> =
+        (0..24).flat_map(|k| [-0.5, 0.5].map(|y| Vec3::new(side(k).cos(), y, side(k).sin()))).collect();
+    positions.extend([Vec3::new(0.0, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)]);
+    let facets = (0..24).flat_map(|k| {
+        let [a, b, c, d] = [2 * k, 2 * k + 1, 2 * ((k + 1) % 24), 2 * ((k + 1) % 24) + 1];
+        [a, b, c, c, b, d, 48, a, c, 49, d, b]
+    });
+    let shared = Mesh::with_shared_normals(positions, facets.collect(), Averaging::Angle);
+    let flat: Vec<[Vec3; 3]> = shared.triangles().collect();
+    let normals = flat.iter().flat_map(|[a, b, c]| [(*b - *a).cross(*c - *a).normalize(); 3]).collect();
+    let drum = Mesh {
+        positions: flat.iter().flatten().copied().collect(),
+        normals,
+        indices: (0..3 * flat.len() as u32).collect(),
+        ..Mesh::default()
+    };
+    let cut = Cut::of(&drum);
+    assert!(cut.is_convex() && cut.is_faceted() && cut.is_closed() && !cut.is_stone(), "{cut:?}");
+}
+
+#[test]
+fn names_and_colours_choose_the_preset() {
+    let stone = |name: &str, color: Vec3| looks(name, brilliant(), Material { base_color: color, ..plastic("m") });
+    for (name, preset) in [
+        ("Rubis_02", "ruby"),
+        ("blueSapphire", "sapphire"),
+        ("SZMARAGD", "emerald"),
+        ("Stone CZ 1.2mm", "zirconia"),
+        ("Brillanten", "diamond"),
+        ("Edelstein", "diamond"),
+        ("钻石1", "diamond"),
+        ("Рубин", "ruby"),
+    ] {
+        assert_eq!(stone(name, Vec3::ONE), Some(Look::Stone(preset)), "{name}");
+    }
+    for (color, preset) in [
+        (Vec3::new(0.8, 0.02, 0.1), "ruby"),
+        (Vec3::new(0.1, 0.7, 0.3), "emerald"),
+        (Vec3::new(0.02, 0.1, 0.6), "sapphire"),
+        (Vec3::new(0.8, 0.8, 0.9), "diamond"),
+        (Vec3::new(0.8, 0.7, 0.1), "diamond"),
+    ] {
+        assert_eq!(stone("node", color), Some(Look::Stone(preset)), "{color}");
+    }
+}
+
+#[test]
+fn words_count_whole_alone() {
+    let words = |name: &str| Words::of([&name.to_owned(), &String::new()]);
+    let nothing = [
+        "Gemini",
+        "stonework",
+        "Goldilocks",
+        "diameter",
+        "orbit",
+        "Steinway",
+        "silverware",
+        "Regem",
+        "ruben",
+        "category",
+    ];
+    for name in nothing {
+        assert_eq!(words(name), Words { stone: None, metal: None }, "{name}");
+    }
+    for name in ["GemStone", "gem_01", "Gems", "big-gem", "Gem.001", "PIERRE 3", "kamień"] {
+        assert!(words(name).stone.is_some(), "{name}");
+    }
+    let metals = [
+        ("Rose Gold 18k", "rose gold"),
+        ("whiteGold", "white gold"),
+        ("Weißgold", "white gold"),
+        ("złoto", "gold"),
+        ("Argent", "silver"),
+        ("PLATIN", "platinum"),
+        ("Metal steel", "steel"),
+    ];
+    for (name, metal) in metals {
+        assert_eq!(words(&name.replace('ß', "ss")).metal.map(|(_, metal)| metal), Some(metal), "{name}");
+    }
+}
+
+#[test]
+fn metals_are_told_by_factor_and_name() {
+    let band = || torus(2.0, 0.3, 40, 20);
+    assert_eq!(looks("band", band(), plastic("m")), None);
+    assert_eq!(looks("band", band(), plastic("Gold")), Some(Look::Metal("gold")));
+    assert_eq!(looks("ring or band", band(), plastic("m")), None);
+    assert_eq!(looks("or", band(), metal("m", Vec3::ONE)), Some(Look::Metal("gold")));
+    for (color, name) in [
+        (Vec3::new(1.0, 0.77, 0.34), "gold"),
+        (Vec3::new(0.95, 0.93, 0.88), "silver"),
+        (Vec3::new(0.95, 0.64, 0.54), "rose gold"),
+        (Vec3::new(0.93, 0.45, 0.3), "copper"),
+    ] {
+        assert_eq!(looks("band", band(), metal("m", color)), Some(Look::Metal(name)), "{color}");
+    }
+    // A metal by name is no stone, though it is cut like one.
+    assert_eq!(looks("silver bead", brilliant(), plastic("m")), Some(Look::Metal("silver")));
+    // A clear body is none.
+    assert_eq!(looks("gold", band(), Material { transmission: 1.0, metallic: 1.0, ..plastic("m") }), None);
+}
+
+#[test]
+fn bodies_of_one_material_are_one_guess_with_its_option() {
+    let guesses = guesses(
+        &scene(vec![
+            Object::new("a", brilliant(), plastic("Gem")),
+            Object::new("b", brilliant(), plastic("Gem")),
+            Object::new("band", torus(2.0, 0.3, 40, 20), metal("metal", Vec3::new(1.0, 0.77, 0.34))),
+            Object::new("table", torus(9.0, 0.3, 40, 20), plastic("paint")),
+            Object::new("it's", brilliant(), plastic("paint")),
+            Object::new("given", brilliant(), plastic("other")),
+        ]),
+        |body| body == 5,
+    );
+    let [gems, band, one] = &guesses[..] else { panic!("{guesses:?}") };
+    assert_eq!(
+        gems.to_string(),
+        "2 objects, first `a` of `Gem`: looks like a stone, diamond (its name says `gem`, closed and convex, 73 facets)"
+    );
+    assert_eq!((&*gems.options(), &gems.bodies[..]), ("--material 'Gem=diamond'", &[0, 1][..]));
+    assert_eq!(band.look, Look::Metal("gold"));
+    assert_eq!(one.options(), r"--material 'it'\''s=diamond'");
+}

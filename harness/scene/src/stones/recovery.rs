@@ -1,0 +1,70 @@
+//! Clear stones whose facets a file has rounded, as exactly convex ones.
+
+use super::note::{self, StoneNote};
+use crate::convex::planes_of_convex;
+use crate::facet_fit::{Recovered, recover};
+use crate::normals::{Normals, is_smooth};
+use crate::{Copies, Mesh, Object, Scene};
+
+/// Cosine of the angle up to which a normal is that of a facet: 5°, more than a byte for each part of it rounds.
+const FLAT: f32 = 0.996;
+/// Share of the area whose normals are those of facets on a body that a file shows with facets.
+const MOST: f64 = 0.9;
+
+impl Scene {
+    /// Gives the clear bodies that are convex but for the rounding of their file exact facets, by [`recover`], and returns what was
+    /// done. A body stays as it is if it is convex already, is painted, is no cut stone by its normals, or if `stays` says so.
+    pub fn recover_stones(&mut self, stays: impl Fn(&Object) -> bool) -> Vec<StoneNote> {
+        let mut notes = Vec::new();
+        for object in &mut self.objects {
+            let is_painted = object.material.textures().next().is_some();
+            if !object.material.has_clear_inside() || is_painted || stays(object) {
+                continue;
+            }
+            let Some(recovered) = exact(object.shape(), object.material.normals) else { continue };
+            note::add(&mut notes, StoneNote::recovered(&object.name, &recovered));
+            match &object.copies {
+                None => object.mesh = recovered.mesh,
+                Some(copies) => {
+                    let copies = Copies { shape: recovered.mesh, places: copies.places.clone() };
+                    *object = Object::of_copies(object.name.clone(), copies, object.material.clone());
+                }
+            }
+        }
+        notes
+    }
+}
+
+/// Returns the stone of a mesh, if it is a cut one and not convex already.
+fn exact(mesh: &Mesh, normals: Normals) -> Option<Recovered> {
+    if normals == Normals::File || mesh.indices.is_empty() || planes_of_convex(mesh).is_some() {
+        return None;
+    }
+    let recovered = recover(mesh).ok()?;
+    // Averaged over all edges, the normals of a cut stone are told from those of a round body by its edges.
+    (normals == Normals::Facets || shows_facets(mesh, &recovered) || !is_smooth(&recovered.mesh)).then_some(recovered)
+}
+
+/// Whether the normals of a mesh are those of the facets that were recovered.
+fn shows_facets(mesh: &Mesh, recovered: &Recovered) -> bool {
+    let (mut flat, mut whole) = (0.0, 0.0);
+    for corners in mesh.indices.chunks_exact(3) {
+        let corners = [0, 1, 2].map(|corner| corners[corner] as usize);
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner].as_dvec3());
+        let area = 0.5 * (b - a).cross(c - a);
+        let middle = (a + b + c) / 3.0;
+        let planes = recovered.facets.iter().map(|facet| facet.plane);
+        let Some(facet) = planes.max_by(|one, other| one.height(middle).total_cmp(&other.height(middle))) else {
+            continue;
+        };
+        let normal = facet.normal.as_vec3();
+        whole += area.length();
+        if corners.iter().all(|&corner| mesh.normals[corner].dot(normal) >= FLAT) {
+            flat += area.length();
+        }
+    }
+    flat >= MOST * whole
+}
+
+#[cfg(test)]
+mod tests;
