@@ -26,7 +26,7 @@ pub const MAX_OBJECTS: u64 = 1 << 16;
 pub const MAX_COORDINATE: f32 = 1e9;
 
 /// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 8] = [
+pub const KNOWN_EXTENSIONS: [&str; 14] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
@@ -35,4 +35,10 @@ pub const KNOWN_EXTENSIONS: [&str; 8] = [
     "KHR_lights_punctual",
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "KHR_draco_mesh_compression",
+    "EXT_texture_webp",
+    "KHR_texture_basisu",
 ];

@@ -13,6 +13,8 @@ mod head;
 mod instancing;
 mod lacking;
 mod lights;
+mod packed;
+mod quantised;
 mod refusals;
 mod refused_data;
 mod sources;

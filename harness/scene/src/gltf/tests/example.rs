@@ -99,8 +99,9 @@ fn the_documented_lights_load_as_they_say() {
 fn the_page_names_every_extension_that_is_read() {
     for name in KNOWN_EXTENSIONS {
         assert!(PAGE.contains(&format!("| `{name}` |")), "{name}");
-        // The example has no images.
-        assert_eq!(PAGE.contains(&format!("\"{name}\"")), name != TEXTURE_TRANSFORM, "{name}");
+        // The example has no images, and its numbers are not compressed.
+        let is_shown = name.starts_with("KHR_materials") || [INSTANCING, "KHR_lights_punctual"].contains(&name);
+        assert_eq!(PAGE.contains(&format!("\"{name}\"")), is_shown, "{name}");
     }
     for mineral in Mineral::ALL {
         assert!(PAGE.contains(mineral.name()), "{mineral:?}");
