@@ -10,6 +10,7 @@ use crate::{Dispersion, Material, Medium, Mineral, glb};
 mod contradictions;
 mod example;
 mod head;
+mod images;
 mod instancing;
 mod lacking;
 mod lights;
