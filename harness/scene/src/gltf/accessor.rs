@@ -1,12 +1,14 @@
 //! Bounds-checked reading of accessors.
 
 use ::gltf::json::Root;
-use ::gltf::json::accessor::{ComponentType, Type};
+use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use ::gltf::json::validation::Checked;
 
 use super::buffers::Buffers;
+use super::draco::Attribute;
 use super::error::{GltfError, item};
-use super::requirement::{DRACO, MESHOPT, QUANTIZATION};
+use super::kind::Kind;
+use super::requirement::{MESHOPT, QUANTIZATION};
 use super::sparse;
 use super::stored::{Stored, little_endian};
 
@@ -18,51 +20,9 @@ pub(super) struct Elements<'a> {
     size: usize,
     count: usize,
     component: ComponentType,
+    /// The number that represents 1; `None` if numbers are as they stand.
+    largest: Option<f32>,
 }
-
-/// Types that an accessor may have for one use.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Kind {
-    types: &'static [Type],
-    components: &'static [ComponentType],
-    description: &'static str,
-}
-
-/// Positions and normals.
-pub(super) const VECTORS: Kind =
-    Kind { types: &[Type::Vec3], components: &[ComponentType::F32], description: "VEC3 of float" };
-
-/// Texture coordinates. Integers are normalised: the largest represents 1.
-pub(super) const TEXTURE_COORDINATES: Kind = Kind {
-    types: &[Type::Vec2],
-    components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
-    description: "VEC2 of float, or of normalised unsigned byte or short,",
-};
-
-/// Colours of vertices, with or without alpha. Integers are normalised: the largest represents 1.
-pub(super) const COLORS: Kind = Kind {
-    types: &[Type::Vec3, Type::Vec4],
-    components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
-    description: "VEC3 or VEC4 of float, or of normalised unsigned byte or short,",
-};
-
-/// Rotations of instances. Integers are normalised: the largest represents 1.
-pub(super) const ROTATIONS: Kind = Kind {
-    types: &[Type::Vec4],
-    components: &[ComponentType::F32, ComponentType::I8, ComponentType::I16],
-    description: "VEC4 of float, or of normalised byte or short,",
-};
-
-/// Times of keys.
-pub(super) const SCALARS: Kind =
-    Kind { types: &[Type::Scalar], components: &[ComponentType::F32], description: "SCALAR of float" };
-
-/// Indices.
-pub(super) const INDICES: Kind = Kind {
-    types: &[Type::Scalar],
-    components: &[ComponentType::U8, ComponentType::U16, ComponentType::U32],
-    description: "SCALAR of unsigned byte, short or int",
-};
 
 impl<'a> Elements<'a> {
     /// Returns the elements of accessor `index`, which `user` refers to. All lengths and offsets
@@ -77,33 +37,8 @@ impl<'a> Elements<'a> {
         let accessor = item(&root.accessors, "accessor", index, || user.to_owned())?;
         let name = format!("accessor {index}");
         let wrong = |problem: String| GltfError::part(name.clone(), problem);
-
-        let component = match accessor.component_type {
-            Checked::Valid(generic) => generic.0,
-            Checked::Invalid => {
-                return Err(wrong("its componentType is not one of glTF's".to_owned()));
-            }
-        };
-        let type_ = match accessor.type_ {
-            Checked::Valid(type_) => Some(type_),
-            Checked::Invalid => None,
-        };
-        let type_ = type_.filter(|type_| kind.types.contains(type_) && kind.components.contains(&component));
-        // Integers that represent fractions must be marked as normalised.
-        let must_be_normalised = |type_: &Type| *type_ != Type::Scalar && component != ComponentType::F32;
-        let Some(type_) = type_.filter(|type_| accessor.normalized || !must_be_normalised(type_)) else {
-            let needs = format!("{user} needs {} there", kind.description);
-            let is_quantised =
-                root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == QUANTIZATION);
-            return Err(wrong(if is_quantised {
-                format!(
-                    "{needs}, and these are quantised by {QUANTIZATION}; export without quantisation, or undo it (`gltf-transform \
-                     dequantize in.glb out.glb` does)"
-                )
-            } else {
-                format!("{needs}; export without quantisation or compression")
-            }));
-        };
+        let (type_, component) = checked(root, accessor, kind, user).map_err(wrong)?;
+        let largest = largest(component, accessor.normalized);
         let size = component.size() * type_.multiplicity();
         let count = accessor.count.0;
         let view = accessor.buffer_view.map(|view| {
@@ -112,24 +47,52 @@ impl<'a> Elements<'a> {
         });
         if let Some(sparse) = &accessor.sparse {
             let bytes = sparse::filled(root, buffers, (index, &name), sparse, (size, count), view.transpose()?)?;
-            return Ok(Self { bytes, stride: size, size, count: bytes.len() / size, component });
+            return Ok(Self { bytes, stride: size, size, count: bytes.len() / size, component, largest });
         }
-        let Some(view) = view else {
-            let has = |name: &str| root.extensions_used.iter().any(|used| used == name);
-            let by = std::iter::once(DRACO).chain(MESHOPT).find(|name| has(name));
-            return Err(wrong(by.map_or_else(
-                || "it has no bufferView, so no data; export it again".to_owned(),
-                |name| {
-                    format!(
-                        "it has no bufferView, so its data are those of {name}, which is not read; export without compression, or unpack it \
-                         (`gltf-transform copy in.glb out.glb` does)"
-                    )
-                },
-            )));
-        };
+        let view = view.unwrap_or_else(|| Err(wrong("it has no bufferView, so no data; export it again".to_owned())));
         let (bytes, stride) = view?;
         // What lies in a buffer fits in a usize.
-        Ok(Self { bytes, stride, size, count: count as usize, component })
+        Ok(Self { bytes, stride, size, count: count as usize, component, largest })
+    }
+
+    /// Returns the values of an unpacked attribute as the elements of accessor `index`, which says what they are.
+    pub(super) fn of_unpacked(
+        root: &Root,
+        attribute: &'a Attribute,
+        index: usize,
+        kind: Kind,
+        user: &str,
+    ) -> Result<Self, GltfError> {
+        let accessor = item(&root.accessors, "accessor", index, || user.to_owned())?;
+        let wrong = |problem: String| GltfError::part(format!("accessor {index}"), problem);
+        let (type_, component) = checked(root, accessor, kind, user).map_err(wrong)?;
+        let Attribute { width, numbers } = attribute;
+        if *width != type_.multiplicity() {
+            let problem = format!("its type has {} components, but {width} are compressed", type_.multiplicity());
+            return Err(wrong(format!("{problem}; export it again")));
+        }
+        let largest = largest(component, accessor.normalized);
+        let size = 4 * width;
+        Ok(Self {
+            bytes: numbers,
+            stride: size,
+            size,
+            count: numbers.len() / size,
+            component: ComponentType::F32,
+            largest,
+        })
+    }
+
+    /// Returns unpacked vertex indices of four bytes as elements.
+    pub(super) fn of_corners(corners: &'a [u8]) -> Self {
+        Self {
+            bytes: corners,
+            stride: 4,
+            size: 4,
+            count: corners.len() / 4,
+            component: ComponentType::U32,
+            largest: None,
+        }
     }
 
     /// Number of elements, at least one.
@@ -137,51 +100,19 @@ impl<'a> Elements<'a> {
         self.count
     }
 
-    /// Iterates over the elements as vectors. Intended for [`VECTORS`].
-    pub(super) fn vectors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
-        self.elements().map(|bytes| {
-            let mut components = bytes.chunks_exact(4).map(little_endian).map(f32::from_bits);
-            std::array::from_fn(|_| components.next().unwrap_or(0.0))
-        })
-    }
-
-    /// Iterates over the elements as pairs. Intended for [`TEXTURE_COORDINATES`].
-    pub(super) fn pairs(self) -> impl Iterator<Item = [f32; 2]> + 'a {
-        self.fractions()
-    }
-
-    /// Iterates over the elements as red, green and blue. Intended for [`COLORS`].
-    pub(super) fn colors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
-        self.fractions()
-    }
-
-    /// Iterates over the elements as single numbers. Intended for [`SCALARS`].
-    pub(super) fn numbers(self) -> impl Iterator<Item = [f32; 1]> + 'a {
-        self.fractions()
-    }
-
-    /// Iterates over the first components of the elements.
-    fn fractions<const N: usize>(self) -> impl Iterator<Item = [f32; N]> + 'a {
-        let component = self.component;
-        let number = move |bytes: &[u8]| match component {
-            ComponentType::U8 => little_endian(bytes) as f32 / 255.0,
-            ComponentType::U16 => little_endian(bytes) as f32 / 65535.0,
-            _ => f32::from_bits(little_endian(bytes)),
-        };
-        self.elements().map(move |bytes| {
-            let mut components = bytes.chunks_exact(component.size()).map(number);
-            std::array::from_fn(|_| components.next().unwrap_or(0.0))
-        })
-    }
-
-    /// Iterates over the elements as quaternions, not yet normalised. Intended for [`ROTATIONS`].
-    pub(super) fn quaternions(self) -> impl Iterator<Item = [f32; 4]> + 'a {
-        let component = self.component;
-        // In glTF the lowest integer, which would map below -1, represents -1.
-        let number = move |bytes: &[u8]| match component {
-            ComponentType::I8 => (f32::from(little_endian(bytes) as i8) / 127.0).max(-1.0),
-            ComponentType::I16 => (f32::from(little_endian(bytes) as i16) / 32767.0).max(-1.0),
-            _ => f32::from_bits(little_endian(bytes)),
+    /// Iterates over the first `N` components of the elements as numbers. Normalised integers become fractions of the largest, and
+    /// the lowest, which would lie below -1, becomes -1.
+    pub(super) fn numbers<const N: usize>(self) -> impl Iterator<Item = [f32; N]> + 'a {
+        let Self { component, largest, .. } = self;
+        let number = move |bytes: &[u8]| {
+            let bits = little_endian(bytes);
+            let number = match component {
+                ComponentType::I8 => f32::from(bits as i8),
+                ComponentType::I16 => f32::from(bits as i16),
+                ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => bits as f32,
+                ComponentType::F32 => f32::from_bits(bits),
+            };
+            largest.map_or(number, |largest| (number / largest).max(-1.0))
         };
         self.elements().map(move |bytes| {
             let mut components = bytes.chunks_exact(component.size()).map(number);
@@ -198,4 +129,41 @@ impl<'a> Elements<'a> {
         let chunks = self.bytes.chunks(self.stride).take(self.count);
         chunks.map(move |chunk| &chunk[..self.size])
     }
+}
+
+/// Returns the type of an accessor, if `user` can have it there.
+fn checked(root: &Root, accessor: &Accessor, kind: Kind, user: &str) -> Result<(Type, ComponentType), String> {
+    let Checked::Valid(component) = accessor.component_type else {
+        return Err("its componentType is not one of glTF's".to_owned());
+    };
+    let Checked::Valid(type_) = accessor.type_ else {
+        return Err("its type is not one of glTF's".to_owned());
+    };
+    let (component, normalized) = (component.0, accessor.normalized);
+    let needs = || format!("{user} needs {} there", kind.description);
+    if kind.has(type_, component, normalized) {
+        return Ok((type_, component));
+    }
+    if !kind.has_quantised(type_, component, normalized) {
+        return Err(format!("{}; export it as such", needs()));
+    }
+    // Writers that compress by meshopt leave the other extension out.
+    let is_declared = |name: &String| name == QUANTIZATION || MESHOPT.contains(&name.as_str());
+    if root.extensions_used.iter().chain(&root.extensions_required).any(is_declared) {
+        Ok((type_, component))
+    } else {
+        Err(format!("{}, or {QUANTIZATION} in extensionsUsed; export it again", needs()))
+    }
+}
+
+/// The integer that represents 1; `None` if numbers stand for themselves.
+fn largest(component: ComponentType, normalized: bool) -> Option<f32> {
+    let largest = match component {
+        ComponentType::I8 => 127.0,
+        ComponentType::U8 => 255.0,
+        ComponentType::I16 => 32767.0,
+        ComponentType::U16 => 65535.0,
+        ComponentType::U32 | ComponentType::F32 => return None,
+    };
+    normalized.then_some(largest)
 }

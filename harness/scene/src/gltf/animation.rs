@@ -6,9 +6,10 @@ use ::gltf::json::scene::UnitQuaternion;
 use ::gltf::json::validation::Checked;
 use glam::{Quat, Vec4};
 
-use super::accessor::{Elements, Kind, ROTATIONS, SCALARS, VECTORS};
+use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, item};
+use super::kind::{Kind, ROTATIONS, SCALARS, VECTORS};
 
 /// Gives the nodes the translations, rotations and scales that all animations have at `time`, in seconds. Before its first key and
 /// after its last one an animation keeps that key's value. Of several that move one property of a node the last one counts.
@@ -74,9 +75,9 @@ fn value(
         ));
     }
     let keys: Vec<Vec4> = if rotates {
-        output.quaternions().map(Vec4::from_array).collect()
+        output.numbers().map(Vec4::from_array).collect()
     } else {
-        output.vectors().map(|[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()
+        output.numbers().map(|[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()
     };
     Ok(interpolated(&times, &keys, interpolation, rotates, time))
 }

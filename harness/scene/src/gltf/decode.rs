@@ -1,4 +1,4 @@
-//! Images of textures, decoded: PNG and JPEG.
+//! Images of textures, decoded: PNG, JPEG, WebP and KTX2.
 
 use std::io::Cursor;
 
@@ -8,6 +8,8 @@ use super::budget::ImageBudget;
 use super::error::excerpt;
 use crate::Texels;
 
+mod ktx2;
+
 /// An image's data: decoded, or the name of another format.
 #[derive(Debug, Clone)]
 pub(super) enum Decoded<T> {
@@ -16,7 +18,7 @@ pub(super) enum Decoded<T> {
 }
 
 /// Formats that files hold, and that the `image` crate does not know.
-const OTHERS: [(&[u8], &str); 2] = [(b"\xabKTX 20\xbb\r\n\x1a\n", "KTX2"), (b"\xabKTX 11\xbb\r\n\x1a\n", "KTX")];
+const OTHERS: [(&[u8], &str); 1] = [(b"\xabKTX 11\xbb\r\n\x1a\n", "KTX")];
 
 /// Memory that a decoder may take for itself: the largest image in 16 bits per channel, and as much
 /// again for what it keeps beside it.
@@ -28,8 +30,11 @@ const DECODER_BYTES: u64 = 2 * 8 * (Texels::LARGEST_SIDE as u64) * (Texels::LARG
 /// Colour profiles, gamma and orientation are passed over, as glTF requires. Grey becomes equal red,
 /// green and blue, and a missing alpha 255; 16 bits per channel are rounded to 8.
 pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<Texels>, String> {
+    if bytes.starts_with(ktx2::MAGIC) {
+        return ktx2::decode(bytes, budget);
+    }
     let format = match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
         Ok(other) => return Ok(Decoded::Format(name_of(other))),
         Err(_) => {
             let known = OTHERS.iter().find(|(start, _)| bytes.starts_with(start));
@@ -78,7 +83,6 @@ fn is_whole_jpeg(bytes: &[u8]) -> bool {
 
 fn name_of(format: ImageFormat) -> &'static str {
     match format {
-        ImageFormat::WebP => "WebP",
         ImageFormat::Avif => "AVIF",
         ImageFormat::Dds => "DDS",
         ImageFormat::Gif => "GIF",
@@ -86,6 +90,6 @@ fn name_of(format: ImageFormat) -> &'static str {
         ImageFormat::Tiff => "TIFF",
         ImageFormat::Hdr => "Radiance",
         ImageFormat::OpenExr => "OpenEXR",
-        _ => "another format than PNG and JPEG",
+        _ => "another format than PNG, JPEG and WebP",
     }
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::limits::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
+use super::limits::{MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// Error in a glTF file, described in one line. Indices count from 0, as in the file itself.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -50,22 +50,11 @@ pub enum GltfError {
     },
     /// The file requires extensions that are not supported.
     #[error(
-        "it requires extensions that are not supported: {extensions}; export it without them \
-         (supported are {})",
-        KNOWN_EXTENSIONS.join(", ")
+        "it requires extensions that are not supported: {extensions}; export it without them (docs/scene_files.md names those that are)"
     )]
     RequiredExtensions {
         /// Names of the extensions.
         extensions: String,
-    },
-    /// The meshes are compressed.
-    #[error(
-        "its meshes are compressed by {extension}, which is not read; export it without compression, or unpack it (`gltf-transform copy \
-         in.glb out.glb` does)"
-    )]
-    Compressed {
-        /// Name of the extension.
-        extension: String,
     },
     /// Reference to an item that is not in the file.
     #[error("{from} refers to {what} {index}, but the file has {count}; export it again")]

@@ -4,10 +4,11 @@ use ::gltf::json::Root;
 use glam::{DMat3, DMat4, DQuat, Quat, Vec3};
 use serde_json::{Map, Value};
 
-use super::accessor::{Elements, Kind, ROTATIONS, VECTORS};
+use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::error::{GltfError, excerpt};
 use super::extension::Extension;
+use super::kind::{Kind, ROTATIONS, VECTORS};
 use super::nodes::{ShownNode, composed, has_no_direction};
 use crate::copies::Place;
 
@@ -78,7 +79,7 @@ impl<'a> Instances<'a> {
         if let Some(instance) = list.first_not_finite() {
             return Err(wrong(format!("instance {instance} of its {NAME} is not finite; mend or remove it")));
         }
-        if let Some(instance) = rotations.and_then(|all| all.quaternions().position(has_no_direction)) {
+        if let Some(instance) = rotations.and_then(|all| all.numbers().position(has_no_direction)) {
             return Err(wrong(format!(
                 "instance {instance} of its {NAME} has the rotation 0, 0, 0, 0, which turns nothing; give a unit quaternion"
             )));
@@ -99,9 +100,9 @@ impl<'a> Instances<'a> {
     /// Iterates over the transforms from the mesh's space to world space, one for each place.
     pub(super) fn transforms(&self) -> impl Iterator<Item = DMat4> + 'a {
         let Self { world, list } = *self;
-        let mut translations = list.and_then(|list| list.translations).map(Elements::vectors);
-        let mut rotations = list.and_then(|list| list.rotations).map(Elements::quaternions);
-        let mut scales = list.and_then(|list| list.scales).map(Elements::vectors);
+        let mut translations = list.and_then(|list| list.translations).map(Elements::numbers);
+        let mut rotations = list.and_then(|list| list.rotations).map(Elements::numbers);
+        let mut scales = list.and_then(|list| list.scales).map(Elements::numbers);
         (0..self.count()).map(move |_| {
             let translation = translations.as_mut().and_then(Iterator::next);
             let rotation = rotations.as_mut().and_then(Iterator::next);
@@ -132,10 +133,10 @@ impl<'a> Instances<'a> {
             let wrong = || format!("instance {instance} has the {name} ({r}, {g}, {b}); give parts from 0 to 1");
             proper.then_some(Vec3::from_array(color)).ok_or_else(wrong)
         };
-        for (instance, base_color) in list.base_colors.iter().flat_map(|colors| colors.vectors()).enumerate() {
+        for (instance, base_color) in list.base_colors.iter().flat_map(|colors| colors.numbers()).enumerate() {
             places[instance].base_color = color(COLORING[0], instance, base_color)?;
         }
-        for (instance, attenuation) in list.attenuation_colors.iter().flat_map(|all| all.vectors()).enumerate() {
+        for (instance, attenuation) in list.attenuation_colors.iter().flat_map(|all| all.numbers()).enumerate() {
             places[instance].attenuation_color = Some(color(COLORING[1], instance, attenuation)?);
         }
         Ok(Some(places))
@@ -154,17 +155,17 @@ impl List<'_> {
     /// unevenly.
     fn places_as_given(&self) -> Option<Vec<Place>> {
         let mut places = vec![Place::IDENTITY; self.count];
-        for (place, translation) in places.iter_mut().zip(self.translations.iter().flat_map(|all| all.vectors())) {
+        for (place, translation) in places.iter_mut().zip(self.translations.iter().flat_map(|all| all.numbers())) {
             place.translation = Vec3::from_array(translation);
         }
-        for (place, rotation) in places.iter_mut().zip(self.rotations.iter().flat_map(|all| all.quaternions())) {
+        for (place, rotation) in places.iter_mut().zip(self.rotations.iter().flat_map(|all| all.numbers())) {
             let exact = DQuat::from_array(rotation.map(f64::from));
             let length = exact.length();
             // The file's own numbers are as close to length 1 as f32 comes.
             let is_unit = (length - 1.0).abs() < 1e-6;
             place.rotation = if is_unit { Quat::from_array(rotation) } else { (exact / length).as_quat() };
         }
-        for (place, [x, y, z]) in places.iter_mut().zip(self.scales.iter().flat_map(|all| all.vectors())) {
+        for (place, [x, y, z]) in places.iter_mut().zip(self.scales.iter().flat_map(|all| all.numbers())) {
             if !(x > 0.0 && x == y && y == z) {
                 return None;
             }
@@ -175,10 +176,10 @@ impl List<'_> {
 
     fn first_not_finite(&self) -> Option<usize> {
         let of_vectors = |elements: Option<Elements<'_>>| {
-            elements?.vectors().position(|vector| !vector.into_iter().all(f32::is_finite))
+            elements?.numbers::<3>().position(|vector| !vector.into_iter().all(f32::is_finite))
         };
         let of_rotations = self.rotations.and_then(|elements| {
-            elements.quaternions().position(|quaternion| !quaternion.into_iter().all(f32::is_finite))
+            elements.numbers::<4>().position(|quaternion| !quaternion.into_iter().all(f32::is_finite))
         });
         let colors = [of_vectors(self.base_colors), of_vectors(self.attenuation_colors)];
         let places = [of_vectors(self.translations), of_rotations, of_vectors(self.scales)];

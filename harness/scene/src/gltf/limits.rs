@@ -26,7 +26,7 @@ pub const MAX_OBJECTS: u64 = 1 << 16;
 pub const MAX_COORDINATE: f32 = 1e9;
 
 /// Supported extensions.
-pub const KNOWN_EXTENSIONS: [&str; 10] = [
+pub const KNOWN_EXTENSIONS: [&str; 16] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
@@ -37,6 +37,12 @@ pub const KNOWN_EXTENSIONS: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
     "WEBGI_materials_diamond",
+    "KHR_mesh_quantization",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "KHR_draco_mesh_compression",
+    "EXT_texture_webp",
+    "KHR_texture_basisu",
 ];
 
 /// Extensions of materials that are known and not drawn, and what is drawn instead.

@@ -8,11 +8,13 @@ use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 
-use super::accessor::{COLORS, Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
+use super::accessor::Elements;
 use super::budget::Budget;
 use super::buffers::Buffers;
+use super::draco;
 use super::error::{GltfError, designation, excerpt, item};
 use super::instances::Instances;
+use super::kind::{COLORS, INDICES, Kind, NORMALS, POSITIONS, TEXTURE_COORDINATES};
 use super::limits::MAX_COORDINATE;
 use super::material::Materials;
 use super::nodes::ShownNode;
@@ -145,15 +147,24 @@ impl<'a> Reader<'a> {
         arrangement: Arrangement,
         instances: &Instances<'_>,
     ) -> Result<Vec<(Mesh, Option<Copies>)>, GltfError> {
-        let positions = self
-            .attribute(&Semantic::Positions, VECTORS)?
-            .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
-        let normals = self.attribute(&Semantic::Normals, VECTORS)?;
-        let uvs = self.attribute(&Semantic::TexCoords(0), TEXTURE_COORDINATES)?;
-        let colors = self.attribute(&Semantic::Colors(0), COLORS)?;
-        let indices = match self.primitive.indices {
-            Some(index) => Some(self.elements(index.value(), INDICES)?),
+        let wrong = |problem: String| GltfError::part(self.user.to_owned(), problem);
+        let extensions = self.primitive.extensions.as_ref().map(|all| &all.others);
+        let compressed = match draco::Reference::of(extensions).map_err(wrong)? {
+            Some(reference) => Some((reference, self.buffers.decoded(self.root, reference.view, self.user)?)),
             None => None,
+        };
+        let attribute = |semantic: Semantic, kind: Kind| self.attribute(&semantic, kind, compressed);
+        // A compressed primitive is a list, whatever it was.
+        let arrangement = if compressed.is_some() { Arrangement::List } else { arrangement };
+        let positions = attribute(Semantic::Positions, POSITIONS)?
+            .ok_or_else(|| wrong("it has no POSITION; export it again".to_owned()))?;
+        let normals = attribute(Semantic::Normals, NORMALS)?;
+        let uvs = attribute(Semantic::TexCoords(0), TEXTURE_COORDINATES)?;
+        let colors = attribute(Semantic::Colors(0), COLORS)?;
+        let indices = match (compressed, self.primitive.indices) {
+            (Some((_, decoded)), _) => Some(Elements::of_corners(&decoded.corners)),
+            (None, Some(index)) => Some(self.elements(index.value(), INDICES)?),
+            (None, None) => None,
         };
         let vertices = positions.count();
         for (what, elements) in [("normals", normals), ("texture coordinates", uvs), ("colours", colors)] {
@@ -186,7 +197,7 @@ impl<'a> Reader<'a> {
             let mirrored = linear.determinant() < 0.0;
             let indices = assemble(&corners, arrangement, mirrored);
             let normals = match normals {
-                Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
+                Some(normals) => given_or_shared(normals.numbers(), Cofactors::of(linear), &positions, &indices),
                 None => shared_normals(&positions, &indices, Averaging::Angle),
             };
             Ok(Mesh { positions, normals, uvs: uvs.clone(), colors: colors.clone(), indices, halo: Vec::new() })
@@ -207,10 +218,21 @@ impl<'a> Reader<'a> {
         Ok(all.into_iter().zip(copies.map(Some)).collect())
     }
 
-    fn attribute(&self, semantic: &Semantic, kind: Kind) -> Result<Option<Elements<'a>>, GltfError> {
-        let attributes = &self.primitive.attributes;
-        let index = attributes.get(&Checked::Valid(semantic.clone()));
-        index.map(|index| self.elements(index.value(), kind)).transpose()
+    /// Returns an attribute; what a compressed primitive does not hold stands beside it.
+    fn attribute(
+        &self,
+        semantic: &Semantic,
+        kind: Kind,
+        compressed: Option<(draco::Reference<'_>, &'a draco::Decoded)>,
+    ) -> Result<Option<Elements<'a>>, GltfError> {
+        let Some(index) = self.primitive.attributes.get(&Checked::Valid(semantic.clone())) else { return Ok(None) };
+        let held =
+            compressed.map(|(reference, decoded)| reference.attribute(&semantic.to_string(), decoded)).transpose();
+        let held = held.map_err(|problem| GltfError::part(self.user.to_owned(), problem))?.flatten();
+        match held {
+            Some(held) => Elements::of_unpacked(self.root, held, index.value(), kind, self.user).map(Some),
+            None => self.elements(index.value(), kind).map(Some),
+        }
     }
 
     fn elements(&self, index: usize, kind: Kind) -> Result<Elements<'a>, GltfError> {
@@ -219,7 +241,7 @@ impl<'a> Reader<'a> {
 
     fn positions(&self, elements: Elements<'_>, world: DMat4, instance: Option<usize>) -> Result<Vec<Vec3>, GltfError> {
         let mut positions = Vec::with_capacity(elements.count());
-        for (vertex, local) in elements.vectors().enumerate() {
+        for (vertex, local) in elements.numbers().enumerate() {
             let position = world.transform_point3(Vec3::from_array(local).as_dvec3()).as_vec3();
             // Written so that NaN fails as well.
             let placed = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
@@ -246,7 +268,7 @@ impl<'a> Reader<'a> {
                 )
             })
         };
-        elements.pairs().enumerate().map(finite).collect()
+        elements.numbers().enumerate().map(finite).collect()
     }
 
     /// Returns the colours, within 0 to 1; none if all are white.
@@ -258,7 +280,7 @@ impl<'a> Reader<'a> {
             let finite = color.is_finite().then(|| color.clamp(Vec3::ZERO, Vec3::ONE));
             finite.ok_or_else(|| GltfError::part(self.user.to_owned(), problem()))
         };
-        let colors: Vec<Vec3> = elements.colors().enumerate().map(color).collect::<Result<_, _>>()?;
+        let colors: Vec<Vec3> = elements.numbers().enumerate().map(color).collect::<Result<_, _>>()?;
         Ok(if colors.iter().all(|color| *color == Vec3::ONE) { Vec::new() } else { colors })
     }
 

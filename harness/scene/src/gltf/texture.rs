@@ -29,6 +29,9 @@ use crate::{Texels, Texture, TextureSlot, TextureTransform, Wrap};
 /// Name of the extension that maps texture coordinates.
 pub(crate) const TRANSFORM: &str = "KHR_texture_transform";
 
+/// Names of the extensions of textures in other formats, the better one first.
+const IMAGES: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
+
 /// A material's reference to a texture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reference<'a> {
@@ -122,7 +125,18 @@ impl<'a> Textures<'a> {
         };
         let wrap = wrap(&sampler)
             .map_err(|problem| GltfError::part(format!("sampler {}", json.sampler.unwrap_or_default()), problem))?;
-        let Some(image) = json.source else {
+        let of_extension =
+            |name: &str| json.extensions.as_ref().map(|all| Extension::of(Some(all), name)?.index("source"));
+        let mut sources = IMAGES.into_iter().filter_map(of_extension);
+        // Of a texture in two formats, the one that every reader knows.
+        let source = match json.source {
+            Some(source) => Some(source),
+            None => sources
+                .find_map(Result::transpose)
+                .transpose()
+                .map_err(|problem| GltfError::part(name.clone(), problem))?,
+        };
+        let Some(image) = source else {
             let other = json.extensions.iter().flatten().find(|(_, extension)| extension.get("source").is_some());
             let Some((extension, _)) = other else {
                 return Err(GltfError::part(name, "it has no image: give it a source, or remove it"));

@@ -123,11 +123,12 @@ fn pairs(surface: &Surface, edge: &[HalfEdge]) -> Vec<[u32; 2]> {
         if begins && !is_done[number] {
             is_done[number] = true;
             begun.push(face);
-        } else if !begins && !is_done[number] {
-            if let Some(other) = begun.pop() {
-                is_done[number] = true;
-                found.push([face, other]);
-            }
+        } else if !begins
+            && !is_done[number]
+            && let Some(other) = begun.pop()
+        {
+            is_done[number] = true;
+            found.push([face, other]);
         }
     }
     found

@@ -25,9 +25,18 @@ fn the_textured_seed_has_what_it_says() {
     assert_eq!(sizes.filter(|size| *size == (16, 8)).count(), 2, "two textures are in JPEG");
 }
 
+/// What is packed is read: no seed loses its image, or has an extension that is not known.
+#[test]
+fn the_packed_seeds_have_what_they_say() {
+    let scenes: Vec<Scene> = packed().unwrap().iter().map(|seed| gltf::parse(seed, None).unwrap()).collect();
+    assert!(scenes.iter().all(|scene| scene.lacking.is_empty()));
+    let with_images = scenes.iter().filter(|scene| scene.objects[0].material.base_color_texture.is_some());
+    assert_eq!((scenes.len(), with_images.count()), (11, 6));
+}
+
 #[test]
 fn seeds_are_valid() {
-    for seed in seeds().unwrap() {
+    for seed in seeds().unwrap().into_iter().chain(packed().unwrap()) {
         assert_eq!(check(&seed), Ok(true), "{:?}", gltf::parse(&seed, None));
     }
 }

@@ -112,6 +112,32 @@ pub fn seeds() -> Result<[Vec<u8>; 3], SceneError> {
     Ok([written, DOCUMENT.as_bytes().to_vec(), textured::seed(octahedron)])
 }
 
+/// Returns valid files that other programs packed: by Draco in two ways, by meshoptimizer, and quantised; and an octahedron with images
+/// in WebP and in KTX2 of three kinds.
+///
+/// # Errors
+/// Never fails, as [`seeds`].
+pub fn packed() -> Result<Vec<Vec<u8>>, SceneError> {
+    let octahedron = Scene::named("octahedron")?;
+    let files: [&[u8]; 6] = [
+        include_bytes!("../../src/gltf/tests/packed/vcol.draco_edge.glb"),
+        include_bytes!("../../src/gltf/tests/packed/vcol.draco_best.glb"),
+        include_bytes!("../../src/gltf/tests/packed/tex_base.draco_edge.glb"),
+        include_bytes!("../../src/gltf/tests/packed/vcol.draco_seq.glb"),
+        include_bytes!("../../src/gltf/tests/packed/vcol.meshopt_high.glb"),
+        include_bytes!("../../src/gltf/tests/packed/quantised.glb"),
+    ];
+    let images: [&[u8]; 5] = [
+        include_bytes!("../../src/gltf/tests/packed/pattern.webp"),
+        include_bytes!("../../src/gltf/tests/packed/pattern.lossy.webp"),
+        include_bytes!("../../src/gltf/tests/packed/pattern.uastc.ktx2"),
+        include_bytes!("../../src/gltf/tests/packed/pattern.uastc_zstd.ktx2"),
+        include_bytes!("../../src/gltf/tests/packed/pattern.etc1s.ktx2"),
+    ];
+    let with_image = |image: &&[u8]| textured::with_image(&octahedron, image);
+    Ok(files.iter().map(|file| file.to_vec()).chain(images.iter().map(with_image)).collect())
+}
+
 /// Returns lists of 1 to 64 edits. Most are short, so that many files stay readable for a long way.
 pub fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let edit = prop_oneof![
@@ -285,7 +311,8 @@ fn is_sound(mesh: &Mesh) -> bool {
 /// # Errors
 /// Returns, in words, the shrunk list of edits that makes the loader panic or break a promise.
 pub fn run(cases: u32) -> Result<Tally, String> {
-    let seeds = seeds().map_err(|error| error.to_string())?;
+    let failed = |error: SceneError| error.to_string();
+    let seeds = [seeds().map_err(failed)?.to_vec(), packed().map_err(failed)?].concat();
     let tally = std::cell::Cell::new(Tally::default());
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));

@@ -42,3 +42,23 @@ fn jpeg() -> Vec<u8> {
     let written = encoder.write_image(&[200, 100, 50].repeat(128), 16, 8, ExtendedColorType::Rgb8);
     written.map(|()| bytes).unwrap_or_default()
 }
+
+/// Returns the scene's first body as .glb with this image, in a buffer, as its base colour texture. Empty if the writer fails.
+pub fn with_image(scene: &Scene, image: &[u8]) -> Vec<u8> {
+    let mut scene = scene.clone();
+    let object = &mut scene.objects[0];
+    object.mesh.uvs = object.mesh.positions.iter().map(|position| position.truncate()).collect();
+    let replaced = Texels::new(1, 1, vec![90; 4]).map(Arc::new);
+    object.material.base_color_texture = replaced.map(|texels| Texture::new(texels, TextureSlot::BaseColor.encoding()));
+    let written = glb::write(&scene).unwrap_or_default();
+    let (json, binary) = super::parts(&written);
+    let mut document: Value = serde_json::from_slice(&written[json]).unwrap_or_default();
+    let mut binary = written[binary.unwrap_or_default()].to_vec();
+    // In place of the written image.
+    let view = document["images"][0]["bufferView"].as_u64().unwrap_or_default() as usize;
+    document["bufferViews"][view] = json!({"buffer": 0, "byteOffset": binary.len(), "byteLength": image.len()});
+    document["images"][0] = json!({"bufferView": view});
+    binary.extend_from_slice(image);
+    document["buffers"][0]["byteLength"] = json!(binary.len());
+    glb::container(document.to_string().as_bytes(), &binary).unwrap_or_default()
+}

@@ -181,13 +181,13 @@ fn what_moves_and_what_is_no_triangle_is_named() {
         d["nodes"][0]["skin"] = json!(0);
         d["skins"] = json!([{"joints": [0]}]);
         d["animations"] = json!([{"channels": [], "samplers": []}, {"channels": [], "samplers": []}]);
-        d["extensionsUsed"] = json!(["KHR_texture_basisu", "KHR_texture_transform", "KHR_materials_ior"]);
+        d["extensionsUsed"] = json!(["MSFT_texture_dds", "KHR_texture_transform", "KHR_materials_ior"]);
     });
     assert_eq!(
         found,
         [
             "animations: 2 of the file (bodies are drawn at rest)",
-            "extensions: `KHR_texture_basisu` of the file (not known)",
+            "extensions: `MSFT_texture_dds` of the file (not known)",
             "morph targets: `targets` of mesh 0 (the body is drawn without them)",
             "points and lines: a primitive of mesh 0 (triangles alone are drawn)",
             "skins: `skin` of node `stone` (the body is drawn at rest)",

@@ -27,7 +27,7 @@ fn accessors_of_the_wrong_kind() {
     refused("/accessors/0/componentType", json!(5123), "needs VEC3 of float");
     refused("/accessors/0/componentType", json!(1), "componentType is not one of glTF's");
     refused("/accessors/0/type", json!("VEC4"), "needs VEC3 of float");
-    refused("/accessors/0/type", json!("VEC9"), "needs VEC3 of float");
+    refused("/accessors/0/type", json!("VEC9"), "type is not one of glTF's");
     refused("/accessors/1/componentType", json!(5126), "unsigned byte, short or int");
     refused("/accessors/0/bufferView", Value::Null, "it has no bufferView");
     refused("/meshes/0/primitives/0/attributes", json!({}), "it has no POSITION");
