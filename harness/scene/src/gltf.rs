@@ -6,6 +6,9 @@
 //! [`MAX_OBJECTS`] bound what a file can make the loader allocate, however small the file is: a few
 //! instances of a large mesh can need as much memory as a large file.
 //!
+//! Numbers may be quantised or compressed by meshoptimizer (`gltf/meshopt.rs`) or Draco (`gltf/draco.rs`); what takes more memory
+//! unpacked than in the file is bounded by [`MAX_FILE_BYTES`] as well.
+//!
 //! The loader reads triangles (also strips and fans) with their first texture coordinates and
 //! colours, node transforms, at rest or at a time of the animations (`gltf/animation.rs`), instances
 //! (`gltf/instances.rs`), a camera (`gltf/camera_node.rs`), directional, point and spot lights (`gltf/light_node.rs`), materials (`gltf/material.rs`) and some
@@ -22,6 +25,7 @@ use super::{Object, Opening, Scene, SceneError};
 
 mod accessor;
 mod animation;
+mod arrangement;
 mod budget;
 mod buffers;
 mod camera_node;

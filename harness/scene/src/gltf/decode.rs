@@ -31,7 +31,8 @@ const DECODER_BYTES: u64 = 2 * 8 * (Texels::LARGEST_SIDE as u64) * (Texels::LARG
 /// green and blue, and a missing alpha 255; 16 bits per channel are rounded to 8.
 pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<Texels>, String> {
     if bytes.starts_with(ktx2::MAGIC) {
-        return ktx2::decode(bytes, budget);
+        let texels = ktx2::decode(bytes, budget)?;
+        return Ok(texels.map_or(Decoded::Format("KTX2 without Basis Universal"), Decoded::Texels));
     }
     let format = match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,

@@ -270,7 +270,8 @@ fn the_libraries_stay_small() {
 fn the_tool_stays_small() {
     let mut needed = packages("lapidary-cook", &[], "normal,build");
     needed.retain(|name| !name.starts_with("lapidary-"));
-    assert!(needed.len() <= 135, "{} packages: {needed:?}", needed.len());
+    // Six of them decode what files compress: Draco, WebP (with one more) and Basis Universal with Zstandard (with one more).
+    assert!(needed.len() <= 140, "{} packages: {needed:?}", needed.len());
     assert!(!needed.iter().any(|name| COMPILERS.iter().any(|one| name.starts_with(one))), "{needed:?}");
 }
 

@@ -8,7 +8,6 @@ use std::io::Read;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use ruzstd::decoding::StreamingDecoder;
 
-use super::Decoded;
 use crate::Texels;
 use crate::gltf::budget::ImageBudget;
 
@@ -36,8 +35,8 @@ const ZSTANDARD: u32 = 2;
 /// What is wrong with a file that ends before it should.
 const SHORT: &str = "its KTX2 data end too early; export or download it again";
 
-/// Decodes the first level.
-pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<Texels>, String> {
+/// Decodes the first level; `None` if the texels are not in Basis Universal.
+pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Option<Texels>, String> {
     let file = File(bytes);
     let [format, width, height, depth, layers, faces, levels] =
         [12, 20, 24, 28, 32, 36, 40].map(|offset| file.word(offset));
@@ -53,7 +52,7 @@ pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<T
     let model = description.get(12).filter(|_| [44, 60].contains(&description.len())).copied();
     let scheme = file.word(44)?;
     if format? != 0 || !matches!((model, scheme), (Some(ETC1S), BASIS_LZ) | (Some(UASTC), 0 | ZSTANDARD)) {
-        return Ok(Decoded::Format("KTX2 without Basis Universal"));
+        return Ok(None);
     }
     budget.take([width, height])?;
 
@@ -71,7 +70,7 @@ pub(super) fn decode(bytes: &[u8], budget: &mut ImageBudget) -> Result<Decoded<T
     let undecodable = |_| "its KTX2 cannot be decoded; export or download it again".to_owned();
     let decoder = Transcoder::new(&container).map_err(undecodable)?;
     let texels = decoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(undecodable)?;
-    Texels::new(width, height, texels).map(Decoded::Texels).ok_or_else(|| SHORT.to_owned())
+    Texels::new(width, height, texels).map(Some).ok_or_else(|| SHORT.to_owned())
 }
 
 struct File<'a>(&'a [u8]);

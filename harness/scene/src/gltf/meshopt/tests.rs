@@ -102,6 +102,39 @@ fn cut_and_lengthened_streams_are_refused() {
     assert_eq!(indices::sequence(SEQUENCE, 1 << 30, 4), Err(stream::SHORT));
 }
 
+/// Whatever a stream holds, what is decoded has the length that was asked for, or there is a fault.
+#[test]
+fn broken_streams_are_refused_or_decoded_whole() {
+    let mut state: u64 = 1;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let mut decoded = 0;
+    for trial in 0..20_000 {
+        let original = [ATTRIBUTES[0], ATTRIBUTES[1], TRIANGLES, SEQUENCE][trial % 4];
+        let mut stream = original.to_vec();
+        for _ in 0..1 + random(4) {
+            let place = 1 + random(stream.len() - 1);
+            match random(8) {
+                0 => stream.truncate(place + 1),
+                1 => stream.insert(place, random(256) as u8),
+                _ => stream[place] = [0, 255, random(256) as u8][random(3)],
+            }
+        }
+        let (length, found) = match trial % 4 {
+            0 | 1 => (270 * 16, attributes::decode(&stream, 270, 16)),
+            2 => (228 * 4, indices::triangles(&stream, 228, 4)),
+            _ => (43 * 4, indices::sequence(&stream, 43, 4)),
+        };
+        if let Ok(bytes) = found {
+            assert_eq!(bytes.len(), length);
+            decoded += 1;
+        }
+    }
+    assert!((2_000..18_000).contains(&decoded), "{decoded} of 20000");
+}
+
 /// Bytes of filtered elements, as the same encoder wrote them, and what they stand for.
 fn unfiltered<const N: usize>(
     filter: Filter,
