@@ -169,34 +169,14 @@ fn stones_far_from_the_origin_are_convex_by_their_mean() {
         brilliant.transformed(DMat4::from_rotation_translation(turn, at))
     };
     let all: Vec<Mesh> = (0..1024).map(place).collect();
-    let convex = all.iter().filter(|mesh| {
-        planes_of_convex(&mesh.transformed(DMat4::from_translation(-mesh.positions[0].as_dvec3()))).is_some()
-    });
-    println!("{} of 1024 convex", convex.count());
+    // About a corner of its own, hardly one is convex any more.
+    let own = |mesh: &Mesh| mesh.transformed(DMat4::from_translation(-mesh.positions[0].as_dvec3()));
+    let convex = all.iter().filter(|mesh| planes_of_convex(&own(mesh)).is_some()).count();
+    assert!(convex < all.len() / 2, "{convex}");
     let mut scene = scene(vec![Object::new("field", joined(&all), diamond())]);
     scene.part_stones(|_| false);
     let copies = scene.objects[0].copies.as_ref().expect("copies");
     let shape = &copies.shape;
-    let v = brilliant
-        .positions
-        .iter()
-        .position(|at| at.distance(Vec3::new(-0.3747666, 0.34302205, 0.3747666)) < 1e-3)
-        .unwrap();
-    let near = brilliant.positions.iter().filter(|at| at.distance(brilliant.positions[v]) < 1e-3).collect::<Vec<_>>();
-    println!("(near {near:?} {:?})", brilliant.positions[v].to_array().map(f64::from));
-    let mut sum = DVec3::ZERO;
-    let mut fitted = DVec3::ZERO;
-    for k in 0..1024 {
-        let (kf, turn) = (k as f64, DQuat::from_euler(glam::EulerRot::ZXY, 0.3 * k as f64, 0.7 * k as f64, 0.0));
-        let at = DVec3::new(3.0 * (kf % 32.0), 0.0, 3.0 * (kf / 32.0).floor());
-        sum += turn.inverse() * (all[k].positions[v].as_dvec3() - at) - brilliant.positions[v].as_dvec3();
-        fitted += copies.places[k].transform().inverse().transform_point3(all[k].positions[v].as_dvec3());
-    }
-    println!("(true {} fitted {})", sum / 1024.0, fitted / 1024.0);
-    for k in 0..12 {
-        let turn = DQuat::from_euler(glam::EulerRot::ZXY, 0.3 * k as f64, 0.7 * k as f64, 0.0);
-        println!("({k} {:?})", (copies.places[k].rotation.as_dquat().inverse() * turn).to_axis_angle());
-    }
     assert_eq!(
         (copies.places.len(), planes_of_convex(shape).map(|planes| planes.len())),
         (1024, Some(73)),
