@@ -46,24 +46,30 @@ type Which = (usize, usize);
 
 impl Scene {
     /// Mends the clear bodies that have an inside, parts those of several closed shells, and joins those of one shape and
-    /// material to copies. A body stays as it is if it has copies already, if `stays` says so, or if its mesh is too large; one
-    /// at which there was nothing to mend, part or join keeps its very mesh.
+    /// material to copies. A body stays as it is if it has copies already, or if its mesh is too large; one at which there was
+    /// nothing to mend, part or join keeps its very mesh. Those that are `apart` are joined to no body of another name.
     ///
     /// Where a body becomes several, they are named `NAME stones 1`, or `NAME stone 1` if it has no copies, and so on, in the
     /// order of their first triangles; what is not closed keeps the name.
-    pub fn part_stones(&mut self, stays: impl Fn(&Object) -> bool) -> Parting {
+    pub fn part_stones(&mut self, apart: impl Fn(&Object) -> bool) -> Parting {
         let mut notes = Vec::new();
         let mut kinds = Kinds::default();
         let mut parted: Vec<Parted> = Vec::new();
         for (origin, object) in self.objects.iter().enumerate() {
             let is_stone = object.material.has_clear_inside() && object.copies.is_none();
-            if !is_stone || object.mesh.indices.is_empty() || stays(object) {
+            if !is_stone || object.mesh.indices.is_empty() {
                 continue;
             }
             match Shells::of(&object.mesh) {
                 Some(shells) => {
                     let noise = registration::noise(&object.mesh).max(shells.tolerance);
-                    parted.push(Parted { origin, kind: kinds.of(object), shells, noise, is_joined: false });
+                    parted.push(Parted {
+                        origin,
+                        kind: kinds.of(object, apart(object)),
+                        shells,
+                        noise,
+                        is_joined: false,
+                    });
                 }
                 None => note::add(&mut notes, StoneNote::TooLarge { first: object.name.clone(), objects: 1 }),
             }

@@ -2,14 +2,14 @@
 
 use super::Failure;
 use super::named::named;
+use super::opened::{Opened, distinct};
 use lapidary_files::nearest;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
 use lapidary_scene as scene;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
-use lapidary_scene::jewellery::{self, Guess};
 use lapidary_scene::normals::Normals;
-use lapidary_scene::{Environment, Material, Object, Opening, PRESETS, Preset, Scene};
+use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -25,19 +25,19 @@ pub(super) struct Asked {
         value_parser = parse_rung,
         help = format!("How much of the light's way is followed, for all objects or one node's, and several times for several: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
-    rung: Vec<(Option<String>, Rung)>,
+    pub(super) rung: Vec<(Option<String>, Rung)>,
     /// Material in place of the scene's, fitted to the body's size: of all bodies, or of those that WHICH names: their node, their
     /// material, the number of one without a name, or a pattern of either name, with * and ?, such as 'Gem*=diamond'. Several times for
     /// several. `cook list --materials` names them.
     #[arg(long, value_name = "[WHICH=]PRESET", value_parser = parse_material)]
-    material: Vec<(Option<String>, &'static Preset)>,
+    pub(super) material: Vec<(Option<String>, &'static Preset)>,
     /// Give bodies that look like stones or metals, and are not marked so, the preset of what they look like: by their names, in
     /// several languages, and by their shapes. Each choice is said. Bodies that --material names keep what it gives.
     #[arg(long)]
-    jewellery: bool,
+    pub(super) jewellery: bool,
     /// Draw the clear stones of a file with its very triangles: neither mended, parted, joined nor given exact facets.
     #[arg(long)]
-    as_modelled: bool,
+    pub(super) as_modelled: bool,
     /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
@@ -45,7 +45,7 @@ pub(super) struct Asked {
     /// Which normals refract in clear bodies: those of the file, between a triangle's corners, or those of
     /// the facets. The file's by default, unless its facets are those of a cut stone.
     #[arg(long, value_name = "WHICH", value_parser = parse_normals)]
-    normals: Option<Normals>,
+    pub(super) normals: Option<Normals>,
     /// Draw effects that a named rung leaves out. shadow: lights cast shadows on everything that is
     /// drawn by its surface alone. half_space: scattering bodies follow the law of a half space. light:
     /// clear bodies show the discs of lights. cdrf, optical_path, diffusion: draw all scattering materials by this
@@ -60,10 +60,10 @@ pub(super) struct Asked {
     environment: Option<PathBuf>,
     /// Camera of the file: its name, its node's name, or its number; the first one by default.
     #[arg(long, value_name = "NAME|N")]
-    camera: Option<String>,
+    pub(super) camera: Option<String>,
     /// Time of the file's animations in seconds; without it, bodies are at rest.
     #[arg(long, value_name = "SECONDS", value_parser = parse_time)]
-    time: Option<f32>,
+    pub(super) time: Option<f32>,
 }
 
 const CDRF: &str = "cdrf";
@@ -111,85 +111,9 @@ impl Asked {
         files
     }
 
-    /// Opens the scene, with the materials and normals that were asked for, and the stones of a file mended, parted and joined
-    /// to copies. The notes say what was changed, and, if `hints`, what looks like an unmarked stone or metal.
-    pub(super) fn open(&self, hints: bool) -> Result<(Scene, Vec<Note>), Failure> {
-        let mut scene = Scene::open_as(&self.scene, &Opening { camera: self.camera.clone(), time: self.time })?;
-        let mut presets = self.presets(&scene)?;
-        let mut notes = self.guessed(&scene, &mut presets, hints);
-        // A preset fits itself to a stone, which its mesh may hold many of: first that bodies are clear, and of one material.
-        for (object, preset) in scene.objects.iter_mut().zip(&presets) {
-            if let Some(preset) = preset {
-                object.material = Material { name: preset.name.to_owned(), ..preset.material(1.0) };
-            }
-        }
-        let is_file = !Scene::sources(&self.scene).is_empty();
-        let stays = |object: &Object| self.rung.iter().any(|(node, _)| node.as_ref() == Some(&object.name));
-        let count = scene.objects.len();
-        let origins: Vec<usize> = if is_file && !self.as_modelled {
-            let parting = scene.part_stones(stays);
-            notes.extend(parting.notes.into_iter().map(Note::Stones));
-            notes.extend(scene.recover_stones(|_| false).into_iter().map(Note::Stones));
-            parting.origins
-        } else {
-            (0..count).collect()
-        };
-        for (object, origin) in scene.objects.iter_mut().zip(origins) {
-            if let Some(preset) = presets[origin] {
-                *object = preset.on(object);
-            }
-        }
-        if let Some(normals) = self.normals {
-            let clear: Vec<&mut Object> =
-                scene.objects.iter_mut().filter(|object| object.material.is_clear()).collect();
-            if clear.is_empty() {
-                return Err(Failure(format!(
-                    "scene `{}`: --normals is for clear bodies, and none is there; leave it out",
-                    scene.name
-                )));
-            }
-            clear.into_iter().for_each(|object| object.material.normals = normals);
-        }
-        Ok((scene, notes))
-    }
-
-    /// Returns the preset that `--material` gives each body.
-    fn presets(&self, scene: &Scene) -> Result<Vec<Option<&'static Preset>>, Failure> {
-        refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
-        let names = Names::of(scene);
-        let mut presets = vec![None; scene.objects.len()];
-        // Those of single nodes come last, so that they count.
-        let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
-        for (node, preset) in all.into_iter().chain(single) {
-            let which = node.as_ref().map(|which| named_bodies(&names, which, "--material")).transpose()?;
-            for (number, of_body) in presets.iter_mut().enumerate() {
-                if which.as_ref().is_none_or(|which| which[number]) {
-                    *of_body = Some(*preset);
-                }
-            }
-        }
-        Ok(presets)
-    }
-
-    /// Adds the presets of what unmarked bodies look like, if that was asked for, and returns notes on them.
-    fn guessed(&self, scene: &Scene, presets: &mut [Option<&'static Preset>], hints: bool) -> Vec<Note> {
-        if !self.jewellery && !hints {
-            return Vec::new();
-        }
-        let given: Vec<bool> = presets.iter().map(Option::is_some).collect();
-        let guesses: Vec<Guess> = jewellery::guesses(scene, |body| given[body]);
-        if !self.jewellery {
-            return guesses.into_iter().map(Note::Unmarked).collect();
-        }
-        for (guess, preset) in guesses.iter().filter_map(|guess| Some((guess, guess.look.preset()?))) {
-            guess.bodies.iter().for_each(|&body| presets[body] = Some(preset));
-        }
-        if guesses.is_empty() { vec![Note::NothingGuessed] } else { guesses.into_iter().map(Note::Guessed).collect() }
-    }
-
     /// Returns the rung that was asked for all objects, or each material's own by default, and those of
     /// single ones.
-    fn rungs(&self, scene: &Scene) -> Result<(Rung, Vec<(String, Rung)>), Failure> {
+    fn rungs(&self, Opened { scene, nodes, .. }: &Opened) -> Result<(Rung, Vec<(String, Rung)>), Failure> {
         refuse_twice("--rung", self.rung.iter().map(|(node, _)| node.as_deref()))?;
         let mut all = None;
         let mut single: Vec<(String, Rung)> = Vec::new();
@@ -198,21 +122,34 @@ impl Asked {
                 all = Some(*rung);
                 continue;
             };
-            refuse_unknown(scene, node, "--rung")?;
+            // A node may have become several bodies.
+            let is_of = |number: usize| nodes[number] == *node || scene.objects[number].name == *node;
+            let of_node: Vec<&Object> = scene
+                .objects
+                .iter()
+                .enumerate()
+                .filter(|(number, _)| is_of(*number))
+                .map(|(_, object)| object)
+                .collect();
+            if of_node.is_empty() {
+                let known = distinct(nodes.iter().chain(scene.objects.iter().map(|object| &object.name)));
+                let (scene, near) = (&scene.name, nearest::suggest(node, &known));
+                return Err(Failure(format!("scene `{scene}` has no node `{node}` for --rung{near}")));
+            }
             if *rung == Rung::Reference {
                 return Err(Failure(format!(
                     "--rung {node}={rung}: the reference draws a whole scene; leave `{node}=` out, or take another rung"
                 )));
             }
             // Nodes may share a name; a note tells of those that the rung is not for.
-            let mut of_node = scene.objects.iter().filter(|object| object.name == *node);
-            if rung.is_for_clear_stones() && of_node.clone().all(|object| !object.material.is_clear()) {
-                let material = of_node.next().map_or("", |object| &object.material.name);
+            if rung.is_for_clear_stones() && of_node.iter().all(|object| !object.material.is_clear()) {
+                let material = of_node.first().map_or("", |object| &object.material.name);
                 return Err(Failure(format!(
                     "--rung {node}={rung}: the rung is for clear stones, and `{node}` is of {material}; take another"
                 )));
             }
-            single.push((node.clone(), *rung));
+            let names = distinct(of_node.into_iter().map(|object| &object.name));
+            single.extend(names.into_iter().map(|name| (name.to_owned(), *rung)));
         }
         if let (Some(Rung::Reference), Some((node, rung))) = (all, single.first()) {
             return Err(Failure(format!("--rung {node}={rung}: the reference draws the whole scene; leave one out")));
@@ -226,7 +163,8 @@ impl Asked {
 
     /// Returns the settings for these arguments, with defaults for the rest, and notes on the
     /// environment.
-    pub(super) fn settings(&self, scene: &Scene) -> Result<(Settings, Vec<Note>), Failure> {
+    pub(super) fn settings(&self, opened: &Opened) -> Result<(Settings, Vec<Note>), Failure> {
+        let scene = &opened.scene;
         let mut notes = Vec::new();
         let environment = match &self.environment {
             None => Environment::Studio,
@@ -250,7 +188,7 @@ impl Asked {
         let (shadows, half_space) = (self.is_with(SHADOW), self.is_with(HALF_SPACE));
         let lights = self.is_with(LIGHT);
         let (width, height) = self.size;
-        let (rung, rungs) = self.rungs(scene)?;
+        let (rung, rungs) = self.rungs(opened)?;
         let quality = self.quality.unwrap_or_default();
         let is_named = |object: &Object| rungs.iter().any(|(name, _)| *name == object.name);
         let all_are_named = !rungs.is_empty() && scene.objects.iter().all(is_named);
@@ -336,7 +274,7 @@ fn parse_normals(text: &str) -> Result<Normals, String> {
 }
 
 /// Refuses an option that is given twice for all objects or for one node.
-fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) -> Result<(), Failure> {
+pub(super) fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) -> Result<(), Failure> {
     let mut seen = Vec::new();
     for node in nodes {
         if seen.contains(&node) {
@@ -346,73 +284,6 @@ fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) 
         seen.push(node);
     }
     Ok(())
-}
-
-/// What bodies are named by.
-struct Names {
-    scene: String,
-    nodes: Vec<String>,
-    materials: Vec<String>,
-}
-
-impl Names {
-    fn of(scene: &Scene) -> Self {
-        let of = |name: fn(&Object) -> &String| scene.objects.iter().map(|object| name(object).clone()).collect();
-        Self {
-            scene: scene.name.clone(),
-            nodes: of(|object| &object.name),
-            materials: of(|object| &object.material.name),
-        }
-    }
-}
-
-/// Whether a body is meant, by the names of its node and of its material.
-type IsMeant<'a> = &'a dyn Fn(&str, &str) -> bool;
-
-/// Returns which bodies are meant: those whose node has this name, or else whose material has it, or else, if it has no name, the
-/// number, or else those of which either name follows the pattern. Refuses what names none.
-fn named_bodies(Names { scene, nodes, materials }: &Names, which: &str, option: &str) -> Result<Vec<bool>, Failure> {
-    // What the loader calls a material without a name.
-    let numbered = format!("material {which}");
-    let pattern = wildmatch::WildMatch::new(which);
-    let follows = |name: &str| which.contains(['*', '?']) && pattern.matches(name);
-    let ways: [IsMeant<'_>; 4] = [
-        &|node, _| node == which,
-        &|_, material| material == which,
-        &|_, material| material == numbered,
-        &|node, material| follows(node) || follows(material),
-    ];
-    let meant = |is_meant: IsMeant<'_>| -> Vec<bool> {
-        nodes.iter().zip(materials).map(|(node, material)| is_meant(node, material)).collect()
-    };
-    ways.into_iter().map(meant).find(|meant| meant.contains(&true)).ok_or_else(|| {
-        let known = distinct(nodes.iter().chain(materials));
-        Failure(format!(
-            "scene `{scene}` has no node or material `{which}` for {option}{}",
-            nearest::suggest(which, &known)
-        ))
-    })
-}
-
-/// Returns each name once, in the order of the first.
-fn distinct<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
-    let mut known: Vec<&str> = Vec::new();
-    for name in names {
-        if !known.contains(&name.as_str()) {
-            known.push(name);
-        }
-    }
-    known
-}
-
-/// Refuses a node that no object comes from.
-fn refuse_unknown(scene: &Scene, node: &str, option: &str) -> Result<(), Failure> {
-    let known = distinct(scene.objects.iter().map(|object| &object.name));
-    if known.contains(&node) {
-        return Ok(());
-    }
-    let scene = &scene.name;
-    Err(Failure(format!("scene `{scene}` has no node `{node}` for {option}{}", nearest::suggest(node, &known))))
 }
 
 /// Refuses an option that asks for an effect which no object has. Call it only if needed, because
@@ -431,28 +302,4 @@ pub(super) fn refuse_without_meaning(
     let reason = decision.map_or("it has no object", |decision| &decision.reason);
     let (scene, rung) = (&scene.name, settings.rung);
     Err(Failure(format!("scene `{scene}` by rung `{rung}`: {option} has no meaning: {reason}; leave it out")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bodies_are_named_by_node_material_number_or_pattern() {
-        let text = |names: [&str; 4]| names.map(str::to_owned).to_vec();
-        let names = Names {
-            scene: "ring".to_owned(),
-            nodes: text(["band", "Gem.001", "Gem.002", "stone"]),
-            materials: text(["gold", "material 2", "material 2", "Gem ruby"]),
-        };
-        let found = |which| named_bodies(&names, which, "--material").ok();
-        assert_eq!(found("band"), Some(vec![true, false, false, false]));
-        assert_eq!(found("Gem ruby"), Some(vec![false, false, false, true]));
-        assert_eq!(found("2"), Some(vec![false, true, true, false]));
-        assert_eq!(found("Gem*"), Some(vec![false, true, true, true]));
-        assert_eq!(found("?old"), Some(vec![true, false, false, false]));
-        assert_eq!((found("gem*"), found("3"), found("bands")), (None, None, None));
-        let message = named_bodies(&names, "Gem rubi", "--material").expect_err("none").0;
-        assert!(message.contains("no node or material `Gem rubi`") && message.contains("`Gem ruby`"), "{message}");
-    }
 }

@@ -3,6 +3,7 @@
 
 use super::asked::{Asked, refuse_without_meaning};
 use super::named::named;
+use super::opened::Opened;
 use super::{Failure, number, output};
 use lapidary_plan::{Decisions, Effect, Geometry, Note, Outside, Quality, Rung, Spectrum};
 use lapidary_render as render;
@@ -223,11 +224,12 @@ impl Drawn {
     /// Opens the scene, and makes the settings and the environment's warnings. `others` are further
     /// options that were given.
     pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
-        let (mut scene, mut notes) = self.asked.open(false)?;
+        let mut opened = self.asked.open(false)?;
         if let Some((polar, azimuth)) = self.from {
-            scene = scene.seen_from(polar, azimuth);
+            opened.scene = opened.scene.seen_from(polar, azimuth);
         }
-        let (asked, more) = self.asked.settings(&scene)?;
+        let (asked, more) = self.asked.settings(&opened)?;
+        let Opened { scene, mut notes, .. } = opened;
         notes.extend(more);
         let curvature = self.diffuse.as_ref().and_then(|options| options.curvature);
         let shadows = self.diffuse.as_ref().and_then(|options| options.shadows);

@@ -7,6 +7,7 @@ mod completions;
 mod drawn;
 mod frame;
 mod list;
+mod opened;
 mod plan;
 mod render;
 mod scene;

@@ -154,11 +154,10 @@ impl<'a> Document<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let (scene, mut notes) = arguments.asked.open(true)?;
-    let (settings, more) = arguments.asked.settings(&scene)?;
-    notes.extend(more);
-    let mut plan = Plan::of(&scene, &settings)?;
-    plan.notes.splice(..0, notes);
+    let opened = arguments.asked.open(true)?;
+    let (settings, more) = arguments.asked.settings(&opened)?;
+    let mut plan = Plan::of(&opened.scene, &settings)?;
+    plan.notes.splice(..0, opened.notes.into_iter().chain(more));
     if arguments.json {
         output::line(&serde_json::to_string_pretty(&Document::of(&plan))?)?;
     } else {

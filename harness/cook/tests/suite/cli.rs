@@ -2,7 +2,7 @@
 
 use lapidary_assay::dispatch;
 use lapidary_cookbook as cookbook;
-use lapidary_scene::{Scene, glb, gltf};
+use lapidary_scene::{Material, Object, Scene, glb, gltf};
 use lapidary_testing::program::{cook, folder, succeeds};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -285,6 +285,39 @@ fn a_node_may_have_a_material_and_a_rung_of_its_own() {
     assert!(all.iter().all(|(object, material, _)| material == if object == "diamond" { "quartz" } else { "emerald" }));
 }
 
+/// Two stones of white plastic in one mesh: `plan` says what they look like, `--jewellery` makes them copies of a diamond, and
+/// the node's rung is for what it became.
+#[test]
+fn jewellery_makes_white_plastic_stones() {
+    let folder = folder();
+    let mut scene = Scene::named("brilliant").expect("built in");
+    let mut mesh = scene.objects[0].mesh.clone();
+    let mut other = mesh.clone();
+    other.positions.iter_mut().for_each(|position| position.x += 3.0);
+    mesh.append(&other);
+    let white = Material { name: "Material.001".to_owned(), ..Material::standard() };
+    scene.objects = vec![Object::new("node", mesh, white)];
+    std::fs::write(folder.path().join("plastic.glb"), glb::write(&scene).expect("glTF")).expect("written");
+    let plan = |more: &[&str]| -> Value {
+        let answer = succeeds(folder.path(), &[&["plan", "plastic.glb", "--json"], more].concat());
+        serde_json::from_str(&answer.stdout).expect("JSON")
+    };
+    let usual = plan(&[]);
+    let said = |plan: &Value, what: &str| plan["notes"].to_string().contains(what);
+    assert_eq!(usual["objects"][0]["material"], "Material.001");
+    assert!(
+        said(&usual, "looks like a stone, diamond") && said(&usual, "--material 'Material.001=diamond'"),
+        "{usual}"
+    );
+    let asked = plan(&["--jewellery", "--rung", "node=walk-3"]);
+    assert_eq!((&asked["objects"][0]["material"], &asked["objects"][0]["rung"]), (&"diamond".into(), &"walk-3".into()));
+    assert!(said(&asked, "2 closed parts in one mesh, drawn as 1 body"), "{asked}");
+    let instances = asked["effects"].as_array().expect("a list").iter().find(|row| row["effect"] == "instances");
+    assert_eq!(instances.expect("a row")["reason"], "2 copies of one shape");
+    // What is named keeps its material.
+    assert_eq!(plan(&["--jewellery", "--material", "node=ruby"])["objects"][0]["material"], "ruby");
+}
+
 /// A preset is the material of the scene that is named after it, down to the picture.
 #[test]
 fn a_brilliant_of_ruby_is_the_ruby() {
@@ -496,12 +529,13 @@ fn what_nothing_calls_for_may_be_left_out() {
 fn render_and_plan_say_the_same_of_a_scene() {
     let folder = folder();
     let mut scene = Scene::named("octahedron").expect("built in");
-    scene.objects[0].mesh.indices.truncate(21);
+    // Two neighbours: an opening that is not flat, so that it is not mended.
+    scene.objects[0].mesh.indices.truncate(18);
     std::fs::write(folder.path().join("open.glb"), glb::write(&scene).expect("written")).expect("a file");
     let asked = ["open.glb", "--size", "8x8", "--rung", "bvh-2"];
     let rendered = cook(folder.path(), &[&["render"], &asked[..]].concat());
     assert_eq!(rendered.code, Some(0), "{rendered:?}");
-    let note = "object `octahedron`: rung `bvh-2` takes a mesh for the surface of a solid, but 3 edges are open; mend the mesh, or light inside \
+    let note = "object `octahedron`: rung `bvh-2` takes a mesh for the surface of a solid, but 4 edges are open; mend the mesh, or light inside \
                 goes astray";
     assert_eq!(rendered.stderr, format!("cook: {note}\n"));
     let plan = succeeds(folder.path(), &[&["plan"], &asked[..]].concat()).stdout;

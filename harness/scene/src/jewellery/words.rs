@@ -136,8 +136,8 @@ const METALS: [(&[&str], &str); 8] = [
     (&["metal", "metall", "metallo", "metaal", "prong", "prongs", "металл", "金属"], ""),
 ];
 
-/// Words that mean something else in other languages, or as a part of a phrase.
-const AMBIGUOUS: [&str; 7] = ["or", "rame", "plata", "rose", "rosa", "stal", "metal"];
+/// Words that mean something else in other languages or as a part of a phrase, or that name a part rather than its matter.
+const AMBIGUOUS: [&str; 9] = ["or", "rame", "plata", "rose", "rosa", "stal", "metal", "prong", "prongs"];
 
 /// Whether a word for a metal means something else as well.
 pub(super) fn is_ambiguous(word: &str) -> bool {

@@ -82,8 +82,9 @@ impl Reference {
         let (mut pairs, mut rotations) = (0, 0);
         let radius = |point: DVec3| (point.length(), (2.0 + point.length()) * noise);
         let ((a_radius, a_within), (b_radius, b_within)) = (radius(a), radius(b));
-        for &first in other.at_radius(a_radius, a_within) {
-            for &second in other.at_radius(b_radius, b_within) {
+        let seconds = other.at_radius(b_radius, b_within);
+        for first in other.at_radius(a_radius, a_within) {
+            for &second in &seconds {
                 pairs += 1;
                 if pairs > MOST_PAIRS || rotations > MOST_ROTATIONS {
                     return None;
@@ -151,7 +152,7 @@ impl Reference {
 fn anchors(form: &Form) -> Option<[usize; 2]> {
     let alike = |number: usize| {
         let radius = form.points[number].length();
-        form.at_radius(radius, (2.0 + radius) * 2.0 * form.noise).len()
+        form.within(radius, (2.0 + radius) * 2.0 * form.noise).len()
     };
     let far = || form.order.iter().copied().filter(|&number| form.points[number].length() >= LEAST_RADIUS);
     let counted: Vec<(usize, usize)> = far().map(|number| (alike(number), number)).collect();

@@ -65,11 +65,19 @@ impl Form {
         Some(Self { points, place_of_vertex, normals, order, radii, triangles, centre, unit, noise: relative })
     }
 
-    /// Returns the numbers of the corners at a distance from the middle, within a tolerance.
-    pub(super) fn at_radius(&self, radius: f64, tolerance: f64) -> &[usize] {
+    /// Returns the numbers of the corners at a distance from the middle, within a tolerance: in the mesh's order, since in that
+    /// of the distances the one whose noise is least would come first, and the mean of many such ones would be off.
+    pub(super) fn at_radius(&self, radius: f64, tolerance: f64) -> Vec<usize> {
+        let mut found = self.order[self.within(radius, tolerance)].to_vec();
+        found.sort_unstable();
+        found
+    }
+
+    /// Returns the places in the order of distances that are within a tolerance of one.
+    pub(super) fn within(&self, radius: f64, tolerance: f64) -> std::ops::Range<usize> {
         let first = self.radii.partition_point(|other| *other < radius - tolerance);
         let end = self.radii.partition_point(|other| *other <= radius + tolerance);
-        &self.order[first..end.max(first)]
+        first..end.max(first)
     }
 
     /// Returns the enclosed volume, the area, and the length of all edges, in units of `unit`.

@@ -120,13 +120,13 @@ fn pairs(surface: &Surface, edge: &[HalfEdge]) -> Vec<[u32; 2]> {
     let mut is_done = vec![false; around.len()];
     for number in (0..around.len()).chain(0..around.len()) {
         let (_, begins, face) = around[number];
-        if begins && !is_done[number] {
+        if is_done[number] {
+            continue;
+        }
+        if begins {
             is_done[number] = true;
             begun.push(face);
-        } else if !begins
-            && !is_done[number]
-            && let Some(other) = begun.pop()
-        {
+        } else if let Some(other) = begun.pop() {
             is_done[number] = true;
             found.push([face, other]);
         }

@@ -36,7 +36,7 @@ pub(super) fn remove(surface: &mut Surface) -> usize {
 /// Whether the places run upwards, but for where they begin.
 fn winding(face: &Face) -> bool {
     let [a, b, c] = face.places;
-    [[a, b, c], [b, c, a], [c, a, b]].iter().any(|turned| turned.is_sorted())
+    [a < b, b < c, c < a].into_iter().filter(|rises| *rises).count() == 2
 }
 
 /// Decides which of two triangles of opposite winding stays.

@@ -8,7 +8,7 @@ use crate::material::Material;
 /// Number of materials with the same factors, but other differences, up to which equal ones are found.
 const MOST_COMPARED: usize = 256;
 
-/// Materials that are equal in all but name, by number.
+/// Materials that are equal in all but name, by number. In place of the name stands that of a body which is apart.
 #[derive(Default)]
 pub(super) struct Kinds {
     of_factors: HashMap<[u32; 12], Vec<(usize, Material)>>,
@@ -16,9 +16,11 @@ pub(super) struct Kinds {
 }
 
 impl Kinds {
-    /// Returns the number of a body's material. Those with images are each of a kind of their own.
-    pub(super) fn of(&mut self, object: &Object) -> usize {
-        let material = Material { name: String::new(), thickness: 1.0, ..object.material.clone() };
+    /// Returns the number of a body's material, and of its name if it is `apart`. Those with images are each of a kind of
+    /// their own.
+    pub(super) fn of(&mut self, object: &Object, apart: bool) -> usize {
+        let name = if apart { object.name.clone() } else { String::new() };
+        let material = Material { name, thickness: 1.0, ..object.material.clone() };
         let next = self.count;
         if material.textures().next().is_some() {
             self.count += 1;

@@ -158,3 +158,29 @@ fn a_mesh_of_many_shapes_stays_together() {
     fewer.part_stones(|_| false);
     assert_eq!((fewer.objects.len(), &*fewer.objects[9].name), (MOST_BODIES, "fewer stone 10"));
 }
+
+/// Coordinates of up to 100 are rounded by 4e-6, which is too much for planes: the mean of many has less.
+#[test]
+fn stones_far_from_the_origin_are_convex_by_their_mean() {
+    let [brilliant, ..] = cuts();
+    let place = |k: usize| {
+        let (k, turn) = (k as f64, DQuat::from_euler(glam::EulerRot::ZXY, 0.3 * k as f64, 0.7 * k as f64, 0.0));
+        let at = DVec3::new(3.0 * (k % 32.0), 0.0, 3.0 * (k / 32.0).floor());
+        brilliant.transformed(DMat4::from_rotation_translation(turn, at))
+    };
+    let all: Vec<Mesh> = (0..1024).map(place).collect();
+    // About a corner of its own, hardly one is convex any more.
+    let own = |mesh: &Mesh| mesh.transformed(DMat4::from_translation(-mesh.positions[0].as_dvec3()));
+    let convex = all.iter().filter(|mesh| planes_of_convex(&own(mesh)).is_some()).count();
+    assert!(convex < all.len() / 2, "{convex}");
+    let mut scene = scene(vec![Object::new("field", joined(&all), diamond())]);
+    scene.part_stones(|_| false);
+    let copies = scene.objects[0].copies.as_ref().expect("copies");
+    let shape = &copies.shape;
+    assert_eq!(
+        (copies.places.len(), planes_of_convex(shape).map(|planes| planes.len())),
+        (1024, Some(73)),
+        "{}",
+        crate::convex::obstacle(shape)
+    );
+}
