@@ -35,7 +35,10 @@ pub fn fresnel(f0: Vec3, cosine: f32) -> Vec3 {
 
 /// Returns a point of Hammersley's set.
 pub fn point(index: u32, count: u32) -> Vec2 {
-    Vec2::new((index.reverse_bits() >> 8) as f32 * 5.960_464_5e-8, index as f32 / count.max(1) as f32)
+    Vec2::new(
+        (index.reverse_bits() >> 8) as f32 * 5.960_464_5e-8,
+        (index as f32 / count.max(1) as f32).min(0.999_999_94),
+    )
 }
 
 /// Returns the cosine of the eye and the alpha that a texel of the table of reflectance stands for.

@@ -30,7 +30,7 @@ pub fn fresnel(f0: DVec3, cosine: f64) -> DVec3 {
 /// Adds up the bits of the index, the lowest as a half, and so on, for 24 bits.
 pub fn point(index: u32, count: u32) -> DVec2 {
     let reversed = (0..24).map(|bit| f64::from(index >> bit & 1) * 0.5f64.powi(bit + 1)).sum();
-    DVec2::new(reversed, f64::from(index) / f64::from(count.max(1)))
+    DVec2::new(reversed, (f64::from(index) / f64::from(count.max(1))).min(1.0 - 0.5f64.powi(24)))
 }
 
 /// Squares the share of the steps before the texel.

@@ -24,18 +24,18 @@ pub(super) fn promises() -> Vec<Promise> {
         }),
         holds(
             "split_sum_point",
-            "y is index / count",
-            |draws| (any_number(draws), any_number(draws).max(1)),
-            |(index, count): (u32, u32), point: Vec2| {
-                let wanted = f64::from(index) / f64::from(count);
-                close(&[point.y], &[wanted], 1e-6 * wanted + 1e-37)
+            "y is the float before 1",
+            |draws| {
+                let count = any_number(draws).max(1);
+                (count.saturating_add(draws.below(1 << 20)), count)
             },
+            |_: (u32, u32), point: Vec2| close(&[point.y], &[1.0 - 0.5f64.powi(24)], 2e-7),
         ),
         holds(
             "split_sum_point",
             "a count of 0 counts as 1",
-            |draws| (any_number(draws), 0),
-            |(index, _): (u32, u32), point: Vec2| close(&[point.y], &[index.into()], 1e-6 * f64::from(index)),
+            |draws| (draws.below(2), 0),
+            |(index, _): (u32, u32), point: Vec2| close(&[point.y], &[index.into()], 4e-7),
         ),
         finite("split_sum_texel", "finite", |draws| {
             (UVec2::new(any_number(draws), any_number(draws)), UVec2::new(any_number(draws), any_number(draws)))
