@@ -127,7 +127,7 @@ struct SplitSumLobe {
 //   portable toward 60 ulp + 4 backward, weight 2e-6 abs + 4 backward, solid_angle 40 ulp + 4 backward
 fn split_sum_lobe(axis: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> SplitSumLobe {
     let a = clamp(alpha, SPLIT_SUM_SMOOTHEST, 1.0f);
-    let v = clamp(u, 0.0f, 1.0f);
+    let v = max(u, 0.0f);
     let near = 1.0f - v;
     let far = a * a * v;
     let inverse = 1.0f / (near + far);

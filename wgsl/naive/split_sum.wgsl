@@ -3,7 +3,7 @@
 
 // A direction of light as Karis prints it: the facet from its cosine. Kept to show where it fails: at small alpha the
 // cosine rounds to 1, and facets, directions and densities with it.
-// Returns: as split_sum_lobe.
+// Returns: as split_sum_lobe, but a weight below 0 below the horizon.
 // Units: as split_sum_lobe.
 // Domain: |axis| = 1, axis.z above -1; alpha in [0.1, 1], u in [0, 1), azimuth a unit vector.
 // Outside: not a number for an axis along -z.
@@ -18,7 +18,7 @@ fn split_sum_lobe_naive(axis: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> Spli
     let toward = 2.0f * facing * facet - axis;
     let spread = facing * facing * (alpha * alpha - 1.0f) + 1.0f;
     let density = alpha * alpha / (3.1415927f * spread * spread) / 4.0f;
-    return SplitSumLobe(toward, max(dot(axis, toward), 0.0f), 1.0f / density);
+    return SplitSumLobe(toward, dot(axis, toward), 1.0f / density);
 }
 
 // The share of seen facets with masking and shadowing computed separately. Kept to show where it fails: at grazing

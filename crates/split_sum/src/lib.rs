@@ -99,7 +99,7 @@ pub struct SplitSumLobe {
 /// Returns a direction of light, at random by `u` and `azimuth`, for eye and surface normal both along `axis`.
 pub fn lobe(axis: Vec3, alpha: f32, u: f32, azimuth: Vec2) -> SplitSumLobe {
     let a = alpha.clamp(SPLIT_SUM_SMOOTHEST, 1.0);
-    let v = u.clamp(0.0, 1.0);
+    let v = u.max(0.0);
     let near = 1.0 - v;
     let far = a * a * v;
     let inverse = 1.0 / (near + far);
@@ -128,7 +128,7 @@ pub fn lobe_naive(axis: Vec3, alpha: f32, u: f32, azimuth: Vec2) -> SplitSumLobe
     let toward = 2.0 * facing * facet - axis;
     let spread = facing * facing * (alpha * alpha - 1.0) + 1.0;
     let density = alpha * alpha / (PI * spread * spread) / 4.0;
-    SplitSumLobe { toward, weight: axis.dot(toward).max(0.0), solid_angle: 1.0 / density }
+    SplitSumLobe { toward, weight: axis.dot(toward), solid_angle: 1.0 / density }
 }
 
 /// Returns the factor on single scattering that makes up for light that meets several facets.

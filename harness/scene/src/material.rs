@@ -5,8 +5,10 @@ use super::{Medium, Mesh, Solver, Texture, TextureSlot};
 use glam::Vec3;
 use lapidary_dispersion::{channels, oracle as dispersion};
 
+mod metal;
 mod mineral;
 
+pub use metal::Metal;
 pub use mineral::Mineral;
 
 /// Optical properties of a body.
