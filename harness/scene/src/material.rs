@@ -62,6 +62,9 @@ pub struct Material {
     /// Roughness of the surface, 0 (a mirror) to 1, as in glTF: its square is the width of the
     /// distribution of microfacet slopes.
     pub roughness: f32,
+    /// How much of the surface of an opaque body is a metal's, 0 to 1, as in glTF: that share has no diffuse light, and
+    /// the base colour for what it reflects head on.
+    pub metallic: f32,
     /// A second distribution of slopes, mixed with that of `roughness`; `None` if there is one only.
     pub second_lobe: Option<Lobe>,
     /// Which of several bodies that share space is there: the one of the greatest number, and of equal ones the body of the
@@ -136,7 +139,7 @@ pub enum Dispersion {
 }
 
 impl Material {
-    /// Returns glTF's default material: white, opaque, refractive index 1.5, no dispersion or
+    /// Returns glTF's default material, though not as a metal: white, opaque, refractive index 1.5, no dispersion or
     /// absorption.
     #[must_use]
     pub fn standard() -> Self {
@@ -159,6 +162,7 @@ impl Material {
             thickness: 0.0,
             thickness_texture: None,
             roughness: 1.0,
+            metallic: 0.0,
             second_lobe: None,
             priority: 0,
             normals: Normals::Decided,
@@ -208,6 +212,8 @@ impl Material {
             Some("its material's thickness is not finite and at least 0; mend it")
         } else if !(0.0..=1.0).contains(&self.roughness) {
             Some("its material's roughness is not between 0 and 1; mend it")
+        } else if !(0.0..=1.0).contains(&self.metallic) {
+            Some("its material's metallic share is not between 0 and 1; mend it")
         } else if !self.coverage.is_none_or(Coverage::is_sound) {
             Some("its material's alpha is not between 0 and 1, or its cutoff not at least 0; mend it")
         } else if !self.second_lobe.is_none_or(Lobe::is_sound) {

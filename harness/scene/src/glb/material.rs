@@ -97,7 +97,7 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
         "name": material.name,
         "pbrMetallicRoughness": {
             "baseColorFactor": material.base_color.extend(material.coverage.map_or(1.0, |coverage| coverage.share)).to_array(),
-            "metallicFactor": 0.0,
+            "metallicFactor": material.metallic,
             "roughnessFactor": material.roughness,
         },
         "extensions": extensions,

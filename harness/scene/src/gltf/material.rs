@@ -180,6 +180,10 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     if material.medium.is_none() {
         material.medium = medium::derived(&material)?;
     }
+    if !material.is_opaque() || material.diffuse_transmission > 0.0 {
+        // glTF's default is 1, and files of clear bodies leave it out.
+        material.metallic = 0.0;
+    }
     Ok(material)
 }
 
@@ -213,7 +217,7 @@ fn surface(json: &JsonMaterial) -> Result<Material, String> {
     }
     let double_sided = json.double_sided;
     let base_color = Vec3::from_array(color);
-    Ok(Material { base_color, coverage, normal_scale, roughness, double_sided, ..Material::standard() })
+    Ok(Material { base_color, coverage, normal_scale, roughness, metallic, double_sided, ..Material::standard() })
 }
 
 fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> {

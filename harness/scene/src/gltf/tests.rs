@@ -281,7 +281,8 @@ fn what_a_material_leaves_out_has_gltfs_default() {
     for extensions in [extensions, none, tiny, json!({})] {
         for extras in [json!({}), json!([1, {"lapidary": 2}]), json!("text"), json!({"lapidary": {}}), Value::Null] {
             let material = material_of(json!({"name": "default", "extensions": extensions, "extras": extras}));
-            assert_eq!(material.unwrap(), Material::standard(), "{extensions} {extras}");
+            let expected = Material { metallic: 1.0, ..Material::standard() };
+            assert_eq!(material.unwrap(), expected, "{extensions} {extras}");
         }
     }
 }

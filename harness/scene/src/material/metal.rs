@@ -1,11 +1,14 @@
 //! Metals whose reflectance is measured.
 
-use crate::spectrum;
+use crate::{Material, spectrum};
 use glam::{DVec3, Vec3};
 
 mod measured;
 
 use measured::Constants;
+
+/// Roughness of polished metal, chosen by eye: what it reflects is sharp but for its smallest details.
+const POLISHED: f32 = 0.1;
 
 /// A metal with known optical constants, or an alloy of such.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,10 +52,25 @@ impl Metal {
         Self::Steel,
     ];
 
+    /// Returns its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gold => "gold",
+            Self::YellowGold => "yellow_gold",
+            Self::RoseGold => "rose_gold",
+            Self::WhiteGold => "white_gold",
+            Self::Silver => "silver",
+            Self::Platinum => "platinum",
+            Self::Copper => "copper",
+            Self::Steel => "steel",
+        }
+    }
+
     /// Returns the share of light that a smooth surface reflects, at a wavelength in nm from 400 to 700 and a cosine of
     /// incidence in [0, 1].
     ///
-    /// Of the coloured alloys no n and k are published: theirs is the mean over their parts, by the number of atoms.
+    /// Of the coloured alloys no n and k were found: theirs is the mean over their parts, by the number of atoms.
     #[must_use]
     pub fn reflectance(self, nanometres: f64, cosine: f64) -> f64 {
         let of = |constants: Constants| measured::reflectance(constants, nanometres, cosine);
@@ -81,6 +99,18 @@ impl Metal {
     #[must_use]
     pub fn base_color(self) -> Vec3 {
         self.reflected(1.0).as_vec3().clamp(Vec3::ZERO, Vec3::ONE)
+    }
+
+    /// Returns the material of the polished metal.
+    #[must_use]
+    pub fn material(self) -> Material {
+        Material {
+            name: self.name().to_owned(),
+            base_color: self.base_color(),
+            metallic: 1.0,
+            roughness: POLISHED,
+            ..Material::standard()
+        }
     }
 }
 

@@ -21,8 +21,9 @@ fn table_of_metals_is_current() {
             }
         }
         let cut = (exact - f0).abs().max_element();
-        table +=
-            &format!("| {metal:?} | {:.3}, {:.3}, {:.3} | {cut:.3} | {worst:.3} at {angle}° |\n", f0.x, f0.y, f0.z);
+        let [red, green, blue] = f0.to_array();
+        let name = metal.name();
+        table += &format!("| `{name}` | {red:.3}, {green:.3}, {blue:.3} | {cut:.3} | {worst:.3} at {angle}° |\n");
     }
     assert!(PAGE.contains(&table), "docs/scene_files.md should hold:\n{table}");
 }
@@ -49,6 +50,15 @@ fn measured_rows_are_in_order() {
     {
         assert!(constants.is_sorted_by(|one, next| one[0] < next[0]));
         assert!(constants[0][0] <= spectrum::SHORTEST && constants[constants.len() - 1][0] >= spectrum::LONGEST);
+    }
+}
+
+#[test]
+fn metals_are_sound_materials() {
+    for metal in Metal::ALL {
+        let material = metal.material();
+        assert_eq!(material.problem(), None, "{metal:?}");
+        assert!(material.is_opaque() && material.metallic == 1.0, "{metal:?}");
     }
 }
 
