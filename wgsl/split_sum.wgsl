@@ -22,7 +22,7 @@ const SPLIT_SUM_GRAZING: f32 = 1e-15f;
 // Albedos below this one count as it. That of alpha 1, head on, is 0.307.
 const SPLIT_SUM_LEAST: f32 = 0.25f;
 // Of the light that leaves a second or later facet, the share of single scattering's loss that meets one more. Fitted
-// to random walks on the facets at constant reflectance: it makes up for the loss to 1 % there.
+// to random walks on the facets at constant reflectance, where the total is right to 1.3 %.
 const SPLIT_SUM_STAYING: f32 = 0.72f;
 
 // Share of light that a facet of a metal reflects, by Schlick: all of it at grazing incidence.
