@@ -5,8 +5,10 @@ use super::{Medium, Mesh, Solver, Texture, TextureSlot};
 use glam::Vec3;
 use lapidary_dispersion::{channels, oracle as dispersion};
 
+mod metal;
 mod mineral;
 
+pub use metal::Metal;
 pub use mineral::Mineral;
 
 /// Optical properties of a body.
@@ -20,8 +22,6 @@ pub struct Material {
     /// Base colour factor, linear RGB, each 0 to 1. Light that crosses the surface is multiplied by
     /// it.
     pub base_color: Vec3,
-    /// Share of an opaque surface that is bare metal, 0 to 1: `metallicFactor`.
-    pub metallic: f32,
     /// How much of what is behind the surface it covers; `None` if all of it.
     pub coverage: Option<Coverage>,
     /// Factor of the base colour, in red, green and blue, and of the coverage, in alpha.
@@ -62,6 +62,9 @@ pub struct Material {
     /// Roughness of the surface, 0 (a mirror) to 1, as in glTF: its square is the width of the
     /// distribution of microfacet slopes.
     pub roughness: f32,
+    /// How much of the surface of an opaque body is a metal's, 0 to 1, as in glTF: that share has no diffuse light, and
+    /// the base colour for what it reflects head on.
+    pub metallic: f32,
     /// A second distribution of slopes, mixed with that of `roughness`; `None` if there is one only.
     pub second_lobe: Option<Lobe>,
     /// Which of several bodies that share space is there: the one of the greatest number, and of equal ones the body of the
@@ -136,14 +139,13 @@ pub enum Dispersion {
 }
 
 impl Material {
-    /// Returns glTF's default material: white, opaque, refractive index 1.5, no dispersion or
+    /// Returns glTF's default material, though not as a metal: white, opaque, refractive index 1.5, no dispersion or
     /// absorption.
     #[must_use]
     pub fn standard() -> Self {
         Self {
             name: "default".to_owned(),
             base_color: Vec3::ONE,
-            metallic: 0.0,
             coverage: None,
             base_color_texture: None,
             normal_texture: None,
@@ -160,6 +162,7 @@ impl Material {
             thickness: 0.0,
             thickness_texture: None,
             roughness: 1.0,
+            metallic: 0.0,
             second_lobe: None,
             priority: 0,
             normals: Normals::Decided,
@@ -209,6 +212,8 @@ impl Material {
             Some("its material's thickness is not finite and at least 0; mend it")
         } else if !(0.0..=1.0).contains(&self.roughness) {
             Some("its material's roughness is not between 0 and 1; mend it")
+        } else if !(0.0..=1.0).contains(&self.metallic) {
+            Some("its material's metallic share is not between 0 and 1; mend it")
         } else if !self.coverage.is_none_or(Coverage::is_sound) {
             Some("its material's alpha is not between 0 and 1, or its cutoff not at least 0; mend it")
         } else if !self.second_lobe.is_none_or(Lobe::is_sound) {

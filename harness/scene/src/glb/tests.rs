@@ -94,6 +94,7 @@ fn every_kind_of_material_survives_writing_and_loading() {
         Material { attenuation_distance: f32::MIN_POSITIVE, ..standard.clone() },
         Material { attenuation_distance: f32::MAX, attenuation_color: Vec3::splat(0.7), ..standard.clone() },
         Material { roughness: 1.0 / 3.0, ..standard.clone() },
+        Material { metallic: 1.0 / 3.0, ..standard.clone() },
         Material { second_lobe: Some(Lobe { roughness: 1.0 / 3.0, weight: 0.1 }), ..standard.clone() },
         Material { sigma0: Some(Vec3::new(0.0, 1.0 / 3.0, f32::MAX)), ..standard.clone() },
         Material { medium: Some(medium()), ..standard.clone() },
@@ -250,6 +251,7 @@ fn what_gltf_forbids_is_refused() {
     assert!(refused(|s| s.objects[0].mesh.positions[0].x = f32::NAN).contains("not finite"));
     assert!(refused(|s| s.objects[0].material.ior = f32::NAN).contains("refractive index"));
     assert!(refused(|s| s.objects[0].material.roughness = 1.1).contains("roughness"));
+    assert!(refused(|s| s.objects[0].material.metallic = f32::NAN).contains("metallic"));
     const FLAT: Option<Lobe> = Some(Lobe { roughness: 0.0, weight: 0.5 });
     assert!(refused(|s| s.objects[0].material.second_lobe = FLAT).contains("second lobe"));
     assert!(refused(|s| s.objects[0].material.sigma0 = Some(Vec3::NEG_X)).contains("sigma0"));

@@ -204,6 +204,10 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     if material.medium.is_none() {
         material.medium = medium::derived(&material)?;
     }
+    if !material.is_opaque() || material.diffuse_transmission > 0.0 {
+        // glTF's default is 1, and files of clear bodies leave it out.
+        material.metallic = 0.0;
+    }
     Ok(material)
 }
 
