@@ -79,7 +79,7 @@ fn split_sum_place(cosine_eye: f32, alpha: f32, size: vec2u) -> vec2f {
 // Units: none; the cosines are to the surface normal, alpha is a slope.
 // Domain: any cosines and alpha, clamped: the light's to [0, 1], the eye's to [1e-15, 1], alpha to [0.001, 1].
 // Outside: nothing.
-// Accuracy: lavapipe 12 ulp; portable 36 ulp
+// Accuracy: lavapipe 12 ulp; portable 36 ulp; order kept
 fn split_sum_shadowing(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     let a = clamp(alpha, SPLIT_SUM_SMOOTHEST, 1.0f);
     let l = clamp(cosine_light, 0.0f, 1.0f);
@@ -98,7 +98,7 @@ fn split_sum_shadowing(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
 // Domain: any cosines and alpha, clamped: to [0, 1], the eye's to [1e-15, 1], alpha to [0.001, 1]. No facet sees a
 //   light below the surface.
 // Outside: nothing.
-// Accuracy: lavapipe 22 ulp; portable 56 ulp
+// Accuracy: lavapipe 22 ulp; portable 56 ulp; order kept
 fn split_sum_albedo(facing: f32, cosine_light: f32, cosine_eye: f32, alpha: f32) -> vec2f {
     let cosine = clamp(facing, 0.0f, 1.0f);
     let rest = 1.0f - cosine;
@@ -124,7 +124,7 @@ struct SplitSumLobe {
 //   azimuth (cos, sin) of any angle. It turns about the axis, from a direction that jumps where axis.z changes sign.
 // Outside: finite for u up to 1 and vectors up to 1e9.
 // Accuracy: lavapipe toward 20 ulp + 2 backward, weight 5e-7 abs + 2 backward, solid_angle 16 ulp + 2 backward;
-//   portable toward 60 ulp + 4 backward, weight 2e-6 abs + 4 backward, solid_angle 40 ulp + 4 backward
+//   portable toward 60 ulp + 4 backward, weight 2e-6 abs + 4 backward, solid_angle 40 ulp + 4 backward; order kept
 fn split_sum_lobe(axis: vec3f, alpha: f32, u: f32, azimuth: vec2f) -> SplitSumLobe {
     let a = clamp(alpha, SPLIT_SUM_SMOOTHEST, 1.0f);
     let v = max(u, 0.0f);

@@ -32,7 +32,8 @@ struct DisplayOutput {
     // Plain mean of linear radiance before the exposure, without the backdrop; alpha is the share
     // of covered samples.
     @location(0) linear: vec4f,
-    // Mean of the tone-mapped samples, encoded, opaque; without the backdrop that of the covered ones, with straight alpha.
+    // Mean of the tone-mapped samples, encoded, opaque; without the backdrop that of the covered ones, with
+    // straight alpha.
     @location(1) encoded: vec4f,
 }
 
@@ -52,20 +53,15 @@ fn display_backdrop(pixel: vec2f) -> vec3f {
     return mix(vec3f(0.006f, 0.007f, 0.010f), vec3f(0.055f, 0.062f, 0.078f), falloff);
 }
 
-@fragment
-fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
-    let pixel = vec2u(position.xy);
-    let behind = display_backdrop(frame.tile + position.xy);
+// The picture of bodies alone: the mean of the light that covers a pixel, and how much of it is covered.
+fn display_covered(pixel: vec2u) -> DisplayOutput {
     var radiance = vec4f(0.0f);
     var light = vec4f(0.0f);
     for (var row = 0u; row < SAMPLES; row++) {
         for (var column = 0u; column < SAMPLES; column++) {
             let found = textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
             radiance += found;
-            if (BACKDROP) {
-                let before = frame.exposure * found.rgb + (1.0f - found.a) * behind;
-                light += vec4f(srgb_tone_curve(before), 1.0f);
-            } else if (found.a > 0.0f) {
+            if (found.a > 0.0f) {
                 light += found.a * vec4f(srgb_tone_curve(frame.exposure * found.rgb / found.a), 1.0f);
             }
         }
@@ -73,4 +69,24 @@ fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
     let count = f32(SAMPLES * SAMPLES);
     let mean = light.rgb / select(1.0f, light.a, light.a > 0.0f);
     return DisplayOutput(radiance / count, vec4f(srgb_encode_color(mean), light.a / count));
+}
+
+@fragment
+fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
+    let pixel = vec2u(position.xy);
+    if (!BACKDROP) {
+        return display_covered(pixel);
+    }
+    let behind = display_backdrop(frame.tile + position.xy);
+    var radiance = vec4f(0.0f);
+    var light = vec3f(0.0f);
+    for (var row = 0u; row < SAMPLES; row++) {
+        for (var column = 0u; column < SAMPLES; column++) {
+            let found = textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
+            radiance += found;
+            light += srgb_tone_curve(frame.exposure * found.rgb + (1.0f - found.a) * behind);
+        }
+    }
+    let count = f32(SAMPLES * SAMPLES);
+    return DisplayOutput(radiance / count, vec4f(srgb_encode_color(light / count), 1.0f));
 }

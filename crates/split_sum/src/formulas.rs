@@ -2,7 +2,10 @@
 
 mod draw;
 mod outside;
+mod shared;
 mod table;
+
+use shared::{M, ROUNDED};
 
 use crate::{self as mirror, SplitSumLobe, oracle};
 use draw::{alpha, axis, azimuth, colour, cosine, random};
@@ -13,13 +16,8 @@ use std::f64::consts::PI;
 
 mirror_struct!(crate, SplitSumLobe { toward, weight, solid_angle });
 
-const M: &str = "split_sum";
-
 /// Error of a unit vector's length: the half turn, two products and a sum, with room for the portable bounds.
 const UNIT: f64 = 64.0 / (1 << 24) as f64;
-
-/// Room for rounding on any device in a result of at most 1.
-const ROUNDED: f64 = 1e-5;
 
 /// Returns every function of the module with its mirror, its oracle and its promises outside its domain.
 #[must_use]

@@ -3,6 +3,7 @@
 use crate::Effect;
 use crate::casting::bounds;
 use crate::remembered::Remembered;
+use crate::setting;
 use glam::{Mat4, Vec2, Vec3};
 use lapidary_scene::normals::{self, Normals};
 use lapidary_scene::{Bounds, Mesh, Object, Scene, TextureSlot, clip_from_world};
@@ -95,9 +96,18 @@ fn others<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = (&'a
 
 /// Returns the first body that shares space with a clear one, which has an inside.
 pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    sharing(object, scene).next()
+}
+
+/// Returns the first such body that does more than hold a cut stone.
+pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    sharing(object, scene).find(|other| !setting::holds(other, object))
+}
+
+fn sharing<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {
     let own = bounds(object);
-    let found = others(object, scene).find(|(other, bounds)| meet(*bounds, own) && share(object, other));
-    found.map(|(other, _)| other)
+    let met = others(object, scene).filter(move |(_, bounds)| meet(*bounds, own)).map(|(other, _)| other);
+    met.filter(|other| share(object, other))
 }
 
 /// Whether a clear body and another one share space.

@@ -59,7 +59,15 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
 fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option<String> {
     let has = |effect| !request.without.has(effect);
     let inside = object.material.thickness > 0.0;
-    if let Some(other) = among::shares_space(object, scene).filter(|_| inside && has(Effect::Nested)) {
+    // A setting is met where light leaves the stone, unless time is no matter.
+    let shared = || match request.quality {
+        Quality::Best => among::shares_space(object, scene),
+        Quality::Fast | Quality::Good => among::reaches_into(object, scene),
+    };
+    if inside
+        && has(Effect::Nested)
+        && let Some(other) = shared()
+    {
         return Some(format!("it shares space with {}", other.name));
     }
     if inside && has(Effect::Smooth) && among::is_smooth(object) {

@@ -32,6 +32,7 @@ pub mod quality;
 mod remembered;
 mod request;
 mod rung;
+mod setting;
 pub mod thickness;
 
 pub use among::{IMAGES_MET, is_smooth};

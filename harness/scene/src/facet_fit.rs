@@ -60,6 +60,8 @@ pub struct Recovered {
     pub moved: f64,
     /// The symmetry that planes were averaged over.
     pub symmetry: Option<Symmetry>,
+    /// Whether the facets are told from rounding: several tolerances gave the same.
+    pub is_steady: bool,
 }
 
 /// A facet of a recovered stone.
@@ -110,10 +112,11 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
     if depth > DEPTH * size {
         return Err(NotRecovered::Dented { depth: depth / size });
     }
-    let regions = steady(&Triangles::new(&points, &hull.triangles), depth, size).ok_or(NotRecovered::Round)?;
+    let (regions, is_steady) =
+        grouped(&Triangles::new(&points, &hull.triangles), depth, size).ok_or(NotRecovered::Round)?;
     let facets: Vec<Facet> = regions.iter().map(|region| facet(region, &points)).collect();
-    let noise = noise(&facets).max(LEAST_TOLERANCE * size);
-    let (planes, symmetry) = match symmetric(&facets, noise) {
+    let noise = noise(&facets).max(if is_steady { LEAST_TOLERANCE * size } else { depth });
+    let (planes, symmetry) = match symmetric(&facets, noise).filter(|_| is_steady) {
         Some((planes, symmetry)) => (planes, Some(symmetry)),
         None => (facets.iter().map(|facet| facet.plane).collect(), None),
     };
@@ -136,6 +139,7 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
         noise: noise / size,
         moved: moved / size,
         symmetry,
+        is_steady,
     })
 }
 
@@ -168,25 +172,29 @@ fn hull_corners(hull: &Hull) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the facets that several tolerances in a row agree on, the first above `depth`: by lower ones each facet that rounding bent
-/// is several.
-fn steady(triangles: &Triangles<'_>, depth: f64, size: f64) -> Option<Vec<Region>> {
+/// is several. If no tolerances agree, those of the least one, of which rounding may have bent one into several; and whether any did.
+fn grouped(triangles: &Triangles<'_>, depth: f64, size: f64) -> Option<(Vec<Region>, bool)> {
     let least = depth.max(LEAST_TOLERANCE * size);
+    let mut first = None;
     let mut row: Vec<Vec<Region>> = Vec::new();
     for step in 0..TOLERANCES {
         let tolerance = least * 2.0_f64.powf(0.5 * f64::from(step));
-        if tolerance > COARSEST * size {
-            return None;
+        if step > 0 && tolerance > COARSEST * size {
+            break;
         }
         let Some(regions) = triangles.grouped(tolerance, MAX_PLANES) else { continue };
+        if regions.len() < 4 {
+            break;
+        }
         if row.last().is_some_and(|last| last.len() != regions.len()) {
-            row.clear();
+            first = first.or(row.drain(..).next());
         }
         row.push(regions);
         if row.len() == STEADY {
-            return row.pop().filter(|regions| regions.len() >= 4);
+            return row.pop().map(|regions| (regions, true));
         }
     }
-    None
+    first.or(row.drain(..).next()).map(|regions| (regions, false))
 }
 
 /// Returns a facet with its plane fitted to its corners.

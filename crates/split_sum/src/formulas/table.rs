@@ -1,7 +1,7 @@
 //! Points of the low-discrepancy set, and texels of the table.
 
 use super::draw::{alpha, cosine};
-use super::{M, ROUNDED};
+use super::shared::{M, ROUNDED};
 use crate::{self as mirror, oracle};
 use glam::{UVec2, Vec2};
 use lapidary_assay::draws::Draws;

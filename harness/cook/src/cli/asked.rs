@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::named::named;
-use super::opened::{Opened, distinct};
+use super::opened::{Opened, distinct, refuse_twice};
 use lapidary_files::nearest;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
@@ -271,19 +271,6 @@ impl Asked {
 
 fn parse_normals(text: &str) -> Result<Normals, String> {
     Normals::named(text).ok_or_else(|| "expected file or facets".to_owned())
-}
-
-/// Refuses an option that is given twice for all objects or for one node.
-pub(super) fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) -> Result<(), Failure> {
-    let mut seen = Vec::new();
-    for node in nodes {
-        if seen.contains(&node) {
-            let what = node.map_or("all objects".to_owned(), |node| format!("`{node}`"));
-            return Err(Failure(format!("{option} names {what} twice; leave one out, or name a node")));
-        }
-        seen.push(node);
-    }
-    Ok(())
 }
 
 /// Refuses an option that asks for an effect which no object has. Call it only if needed, because

@@ -8,6 +8,7 @@ mod drawn;
 mod frame;
 mod list;
 mod opened;
+mod opening;
 mod plan;
 mod render;
 mod scene;

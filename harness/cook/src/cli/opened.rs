@@ -1,11 +1,8 @@
-//! The scene of a command: opened, given the materials that were asked for, its stones parted.
+//! A scene as a command draws it, and the names of its bodies.
 
 use super::Failure;
-use super::asked::{Asked, refuse_twice};
-use lapidary_files::nearest;
 use lapidary_plan::Note;
-use lapidary_scene::jewellery::{self, Guess};
-use lapidary_scene::{Material, Object, Opening, Preset, Scene};
+use lapidary_scene::Scene;
 
 /// A scene as it is drawn.
 pub(super) struct Opened {
@@ -16,130 +13,17 @@ pub(super) struct Opened {
     pub(super) nodes: Vec<String>,
 }
 
-impl Asked {
-    /// Opens the scene, with the materials and normals that were asked for, and the stones of a file mended, parted and joined
-    /// to copies. The notes say what was changed, and, if `hints`, what looks like an unmarked stone or metal.
-    pub(super) fn open(&self, hints: bool) -> Result<Opened, Failure> {
-        let opening = Opening { camera: self.camera.clone(), time: self.time };
-        let mut scene = Scene::open_as(&self.scene, &opening)?;
-        let mut presets = self.presets(&scene)?;
-        let mut notes = self.guessed(&scene, &mut presets, hints);
-        // A preset fits itself to a stone, which its mesh may hold many of: first that bodies are clear, and of one material.
-        for (object, preset) in scene.objects.iter_mut().zip(&presets) {
-            if let Some(preset) = preset {
-                object.material = Material { name: preset.name.to_owned(), ..preset.material(1.0) };
-            }
+/// Refuses an option that is given twice for all objects or for one node.
+pub(super) fn refuse_twice<'a>(option: &str, nodes: impl Iterator<Item = Option<&'a str>>) -> Result<(), Failure> {
+    let mut seen = Vec::new();
+    for node in nodes {
+        if seen.contains(&node) {
+            let what = node.map_or("all objects".to_owned(), |node| format!("`{node}`"));
+            return Err(Failure(format!("{option} names {what} twice; leave one out, or name a node")));
         }
-        let names: Vec<String> = scene.objects.iter().map(|object| object.name.clone()).collect();
-        let is_file = !Scene::sources(&self.scene).is_empty();
-        let is_asked = |object: &Object| self.rung.iter().any(|(node, _)| node.as_ref() == Some(&object.name));
-        let origins: Vec<usize> = if is_file && !self.as_modelled {
-            let parting = scene.part_stones(is_asked);
-            let recovered = scene.recover_stones(|_| false);
-            notes.extend(parting.notes.into_iter().chain(recovered).map(Note::Stones));
-            parting.origins
-        } else {
-            (0..names.len()).collect()
-        };
-        for (object, origin) in scene.objects.iter_mut().zip(&origins) {
-            if let Some(preset) = presets[*origin] {
-                *object = preset.on(object);
-            }
-        }
-        if let Some(normals) = self.normals {
-            let clear: Vec<&mut Object> =
-                scene.objects.iter_mut().filter(|object| object.material.is_clear()).collect();
-            if clear.is_empty() {
-                return Err(Failure(format!(
-                    "scene `{}`: --normals is for clear bodies, and none is there; leave it out",
-                    scene.name
-                )));
-            }
-            clear.into_iter().for_each(|object| object.material.normals = normals);
-        }
-        let nodes = origins.into_iter().map(|origin| names[origin].clone()).collect();
-        Ok(Opened { scene, notes, nodes })
+        seen.push(node);
     }
-
-    /// Returns the preset that `--material` gives each body.
-    fn presets(&self, scene: &Scene) -> Result<Vec<Option<&'static Preset>>, Failure> {
-        refuse_twice("--material", self.material.iter().map(|(node, _)| node.as_deref()))?;
-        let names = Names::of(scene);
-        let mut presets = vec![None; scene.objects.len()];
-        // Those of single nodes come last, so that they count.
-        let (single, all): (Vec<_>, Vec<_>) = self.material.iter().partition(|(node, _)| node.is_some());
-        for (node, preset) in all.into_iter().chain(single) {
-            let which = node.as_ref().map(|which| named_bodies(&names, which, "--material")).transpose()?;
-            for (number, of_body) in presets.iter_mut().enumerate() {
-                if which.as_ref().is_none_or(|which| which[number]) {
-                    *of_body = Some(*preset);
-                }
-            }
-        }
-        Ok(presets)
-    }
-
-    /// Adds the presets of what unmarked bodies look like, if that was asked for, and returns notes on them.
-    fn guessed(&self, scene: &Scene, presets: &mut [Option<&'static Preset>], hints: bool) -> Vec<Note> {
-        if !self.jewellery && !hints {
-            return Vec::new();
-        }
-        let given: Vec<bool> = presets.iter().map(Option::is_some).collect();
-        let guesses: Vec<Guess> = jewellery::guesses(scene, |body| given[body]);
-        if !self.jewellery {
-            return guesses.into_iter().map(Note::Unmarked).collect();
-        }
-        for (guess, preset) in guesses.iter().filter_map(|guess| Some((guess, guess.look.preset()?))) {
-            guess.bodies.iter().for_each(|&body| presets[body] = Some(preset));
-        }
-        if guesses.is_empty() { vec![Note::NothingGuessed] } else { guesses.into_iter().map(Note::Guessed).collect() }
-    }
-}
-
-/// What bodies are named by.
-struct Names {
-    scene: String,
-    nodes: Vec<String>,
-    materials: Vec<String>,
-}
-
-impl Names {
-    fn of(scene: &Scene) -> Self {
-        let of = |name: fn(&Object) -> &String| scene.objects.iter().map(|object| name(object).clone()).collect();
-        Self {
-            scene: scene.name.clone(),
-            nodes: of(|object| &object.name),
-            materials: of(|object| &object.material.name),
-        }
-    }
-}
-
-/// Whether a body is meant, by the names of its node and of its material.
-type IsMeant<'a> = &'a dyn Fn(&str, &str) -> bool;
-
-/// Returns which bodies are meant: those whose node has this name, or else whose material has it, or else, if it has no name, the
-/// number, or else those of which either name follows the pattern. Refuses what names none.
-fn named_bodies(Names { scene, nodes, materials }: &Names, which: &str, option: &str) -> Result<Vec<bool>, Failure> {
-    // What the loader calls a material without a name.
-    let numbered = format!("material {which}");
-    let pattern = wildmatch::WildMatch::new(which);
-    let follows = |name: &str| which.contains(['*', '?']) && pattern.matches(name);
-    let ways: [IsMeant<'_>; 4] = [
-        &|node, _| node == which,
-        &|_, material| material == which,
-        &|_, material| material == numbered,
-        &|node, material| follows(node) || follows(material),
-    ];
-    let meant = |is_meant: IsMeant<'_>| -> Vec<bool> {
-        nodes.iter().zip(materials).map(|(node, material)| is_meant(node, material)).collect()
-    };
-    ways.into_iter().map(meant).find(|meant| meant.contains(&true)).ok_or_else(|| {
-        let known = distinct(nodes.iter().chain(materials));
-        Failure(format!(
-            "scene `{scene}` has no node or material `{which}` for {option}{}",
-            nearest::suggest(which, &known)
-        ))
-    })
+    Ok(())
 }
 
 /// Returns each name once, in the order of the first.
@@ -151,28 +35,4 @@ pub(super) fn distinct<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a s
         }
     }
     known
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bodies_are_named_by_node_material_number_or_pattern() {
-        let text = |names: [&str; 4]| names.map(str::to_owned).to_vec();
-        let names = Names {
-            scene: "ring".to_owned(),
-            nodes: text(["band", "Gem.001", "Gem.002", "stone"]),
-            materials: text(["gold", "material 2", "material 2", "Gem ruby"]),
-        };
-        let found = |which| named_bodies(&names, which, "--material").ok();
-        assert_eq!(found("band"), Some(vec![true, false, false, false]));
-        assert_eq!(found("Gem ruby"), Some(vec![false, false, false, true]));
-        assert_eq!(found("2"), Some(vec![false, true, true, false]));
-        assert_eq!(found("Gem*"), Some(vec![false, true, true, true]));
-        assert_eq!(found("?old"), Some(vec![true, false, false, false]));
-        assert_eq!((found("gem*"), found("3"), found("bands")), (None, None, None));
-        let message = named_bodies(&names, "Gem rubi", "--material").expect_err("none").0;
-        assert!(message.contains("no node or material `Gem rubi`") && message.contains("`Gem ruby`"), "{message}");
-    }
 }

@@ -85,7 +85,12 @@ impl Case<'_> {
     }
 
     pub(super) fn nested(&self) -> Answer {
-        let shares = among::shares_space(self.object, self.scene);
+        // By another rung, what only holds the stone is met where light leaves it.
+        let shares = if self.is_among() {
+            among::shares_space(self.object, self.scene)
+        } else {
+            among::reaches_into(self.object, self.scene)
+        };
         let own = shares.map(|other| format!("{} shares space with {}", self.object.name, other.name));
         // Light goes through all clear bodies, so that any of them calls for it. Few vertices are looked at: here boxes that
         // meet are enough.

@@ -62,6 +62,8 @@ pub enum StoneNote {
         uncertainty: f64,
         /// Number of bodies whose facets were averaged over a symmetry.
         symmetric: usize,
+        /// Number of bodies whose facets rounding may have parted: they are too small for its step.
+        unsteady: usize,
     },
     /// Meshes that are too large to be looked at.
     TooLarge {
@@ -83,6 +85,7 @@ impl StoneNote {
             moved: recovered.moved,
             uncertainty: recovered.uncertainty(),
             symmetric: usize::from(recovered.symmetry.is_some()),
+            unsteady: usize::from(!recovered.is_steady),
         }
     }
 }
@@ -100,13 +103,14 @@ pub(super) fn add(notes: &mut Vec<StoneNote>, new: StoneNote) {
                 return;
             }
             (
-                StoneNote::Recovered { objects, facets, volume, moved, uncertainty, symmetric, .. },
+                StoneNote::Recovered { objects, facets, volume, moved, uncertainty, symmetric, unsteady, .. },
                 StoneNote::Recovered {
                     facets: more_facets,
                     volume: more_volume,
                     moved: more_moved,
                     uncertainty: more_uncertainty,
                     symmetric: more_symmetric,
+                    unsteady: more_unsteady,
                     ..
                 },
             ) => {
@@ -116,6 +120,7 @@ pub(super) fn add(notes: &mut Vec<StoneNote>, new: StoneNote) {
                 *moved = moved.max(*more_moved);
                 *uncertainty = uncertainty.max(*more_uncertainty);
                 *symmetric += more_symmetric;
+                *unsteady += more_unsteady;
                 return;
             }
             (StoneNote::TooLarge { objects, .. }, StoneNote::TooLarge { .. }) => {
@@ -171,16 +176,30 @@ impl fmt::Display for StoneNote {
                 "{}: one shape and material, turned and scaled, drawn as {copies} copies",
                 named(first, *bodies)
             ),
-            Self::Recovered { first, objects, facets: [fewest, most], volume, moved, uncertainty, symmetric } => {
+            Self::Recovered {
+                first,
+                objects,
+                facets: [fewest, most],
+                volume,
+                moved,
+                uncertainty,
+                symmetric,
+                unsteady,
+            } => {
                 let facets = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
                 let by_symmetry = match symmetric {
                     0 => String::new(),
                     _ if symmetric == objects => ", averaged over its symmetry".to_owned(),
                     _ => format!(", averaged over a symmetry for {symmetric}"),
                 };
+                let parted = match unsteady {
+                    0 => String::new(),
+                    _ if unsteady == objects => ", some of which rounding may have parted".to_owned(),
+                    _ => format!(", some of which rounding may have parted in {unsteady}"),
+                };
                 write!(
                     f,
-                    "{}: convex but for rounding, drawn with {facets} exact facets{by_symmetry}: each turned by at most {:.2}°, corners \
+                    "{}: convex but for rounding, drawn with {facets} exact facets{by_symmetry}{parted}: each turned by at most {:.2}°, corners \
                      moved by {:.1e} of its size, {:.2} % of the hull's volume filled",
                     named(first, *objects),
                     uncertainty.to_degrees(),

@@ -1,0 +1,82 @@
+//! Whether an opaque body that shares space with a cut stone only holds it.
+
+use crate::remembered::Remembered;
+use glam::DVec3;
+use lapidary_scene::convex::planes_of_convex;
+use lapidary_scene::polyhedron::Plane;
+use lapidary_scene::{Bounds, Mesh, Object};
+
+/// Depth, as a share of a stone's radius, up to which the prongs and the seat of a setting are modelled into it.
+const DEEPEST: f64 = 0.25;
+
+/// Whether `other` is opaque, and reaches into a convex stone no deeper than a setting does: light inside that would meet it there
+/// meets it where it leaves the stone.
+pub(crate) fn holds(other: &Object, stone: &Object) -> bool {
+    static FOUND: Remembered<bool> = Remembered::new();
+    let is_opaque = !other.material.is_clear() && !other.material.scatters();
+    is_opaque && stone.copies.is_none() && FOUND.of_both(&stone.mesh, &other.mesh, stays_out)
+}
+
+/// Whether no triangle of `other` meets the stone's inside, deeper than a setting.
+fn stays_out(stone: &Mesh, other: &Mesh) -> bool {
+    let Some(planes) = planes_of_convex(stone) else { return false };
+    let deepest = DEEPEST * f64::from(Bounds::of(stone.positions.iter().copied()).radius());
+    let inner: Vec<Plane> = planes.iter().map(|plane| Plane { distance: plane.distance - deepest, ..*plane }).collect();
+    let mut triangles = other.triangles().map(|corners| corners.map(|corner| corner.as_dvec3()));
+    !triangles.any(|triangle| is_cut_by(triangle.to_vec(), &inner))
+}
+
+/// Whether anything of a flat, convex ring of corners lies below all planes.
+fn is_cut_by(mut ring: Vec<DVec3>, planes: &[Plane]) -> bool {
+    // Most triangles lie above one plane.
+    if planes.iter().any(|plane| ring.iter().all(|corner| plane.height(*corner) >= 0.0)) {
+        return false;
+    }
+    for plane in planes {
+        let mut left = Vec::with_capacity(ring.len() + 1);
+        for (number, corner) in ring.iter().enumerate() {
+            let next = ring[(number + 1) % ring.len()];
+            let [from, to] = [plane.height(*corner), plane.height(next)];
+            if from < 0.0 {
+                left.push(*corner);
+            }
+            if (from < 0.0) != (to < 0.0) {
+                left.push(corner.lerp(next, from / (from - to)));
+            }
+        }
+        if left.is_empty() {
+            return false;
+        }
+        ring = left;
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, Vec3};
+    use lapidary_scene::surfaces::rounded_box;
+    use lapidary_scene::{Material, Scene};
+
+    fn bar(half: [f64; 3], at: [f64; 3]) -> Object {
+        let mesh = rounded_box(DVec3::from_array(half), 0.01, 2).placed(DQuat::IDENTITY, DVec3::from_array(at));
+        Object::new("bar", mesh, Material::standard())
+    }
+
+    /// The brilliant is 2 wide.
+    #[test]
+    fn a_prong_holds_and_a_rod_through_does_not() {
+        let stone = Scene::named("brilliant").unwrap().objects.remove(0);
+        let girdle = stone.mesh.positions.iter().copied().max_by(|a, b| a.x.total_cmp(&b.x)).unwrap();
+        let Vec3 { x, y, .. } = girdle;
+        let [x, y] = [x, y].map(f64::from);
+        assert!(holds(&bar([0.1, 0.5, 0.1], [x, y, 0.0]), &stone));
+        assert!(holds(&bar([0.1, 0.5, 0.1], [3.0 * x, y, 0.0]), &stone));
+        // All corners of the rod lie outside.
+        assert!(!holds(&bar([5.0, 0.05, 0.05], [0.0, y - 0.2, 0.0]), &stone));
+        assert!(!holds(&bar([0.05; 3], [0.0, y - 0.2, 0.0]), &stone));
+        let clear = Object { material: stone.material.clone(), ..bar([0.1, 0.5, 0.1], [x, y, 0.0]) };
+        assert!(!holds(&clear, &stone));
+    }
+}
