@@ -269,7 +269,6 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         diffuse_transmission: 0.5,
         diffuse_transmission_color: Vec3::new(0.5, 0.0, 1.0),
         thickness: 3.0,
-        metallic: 1.0,
         roughness: 0.25,
         sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
         medium: Some(Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.0))),
