@@ -44,6 +44,10 @@ const AVERAGED: f64 = 3.5;
 /// Distance of a corner from the solid, in half steps, up to which it is rounding.
 const MOVED: f64 = 6.0;
 
+/// Angle in radians up to which facets may be uncertain if no tolerances agree: 5°. Beyond it, dents that were modelled are not told
+/// from rounding.
+const UNSTEADY: f64 = 0.087;
+
 /// A stone recovered from a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recovered {
@@ -132,7 +136,7 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
         plane: Plane { normal: plane.normal, distance: plane.distance + plane.normal.dot(centre) },
         uncertainty: 2.0 * half_step / width(&facet.points, plane.normal) / order,
     });
-    Ok(Recovered {
+    let recovered = Recovered {
         mesh: solid,
         facets: facets.collect(),
         volume: outside,
@@ -140,7 +144,9 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
         moved: moved / size,
         symmetry,
         is_steady,
-    })
+    };
+    let angle = recovered.uncertainty();
+    if is_steady || angle <= UNSTEADY { Ok(recovered) } else { Err(NotRecovered::Uncertain { angle }) }
 }
 
 /// Returns the greatest depth below the hull of the mesh's surface, at the corners and the middles of sides: where rounding bends a

@@ -40,4 +40,10 @@ pub enum NotRecovered {
     /// The planes enclose nothing.
     #[error("is no solid of its facets: they leave a side open")]
     Open,
+    /// Tolerances do not agree on the facets, and rounding could turn one far.
+    #[error("has no certain facets: one could be turned by {:.0}°", angle.to_degrees())]
+    Uncertain {
+        /// The angle in radians.
+        angle: f64,
+    },
 }

@@ -182,3 +182,23 @@ fn what_is_no_rounded_cut_says_why() {
     let ball = crate::surfaces::sphere(1.0, 200);
     says(recover(&ball).map(|_| 0).map_err(|error| error.to_string()), "has more triangles than a cut stone");
 }
+
+/// A stone whose corners were modelled unevenly is none that rounding bent: it keeps its mesh.
+#[test]
+fn dents_that_were_modelled_are_no_rounding() {
+    let [(_, brilliant), ..] = cuts();
+    let size = f64::from(2.0 * Bounds::of(brilliant.positions.iter().copied()).radius());
+    let mut kept = 0;
+    for row in 0..8 {
+        let mut draws = Draws::of_row(41, row);
+        let mut dented = brilliant.clone();
+        for position in &mut dented.positions {
+            *position += Vec3::from_array([0; 3].map(|_| draws.between(-1.0, 1.0))) * (4e-3 * size) as f32;
+        }
+        match recover(&dented) {
+            Err(_) => kept += 1,
+            Ok(found) => assert!(found.is_steady || found.uncertainty() <= UNSTEADY, "{}", found.uncertainty()),
+        }
+    }
+    assert!(kept >= 6, "{kept}");
+}
