@@ -45,7 +45,13 @@ fn split_sum_fresnel(f0: vec3f, cosine: f32) -> vec3f {
 // Outside: y is the float before 1; a count of 0 counts as 1.
 // Accuracy: lavapipe 1 ulp; portable 3 ulp
 fn split_sum_point(index: u32, count: u32) -> vec2f {
-    return vec2f(f32(reverseBits(index) >> 8u) * 5.9604645e-8f, min(f32(index) / f32(max(count, 1u)), 0.99999994f));
+    // GLSL ES has no function that reverses bits: halves change places, then quarters, down to single bits.
+    var bits = (index << 16u) | (index >> 16u);
+    bits = ((bits & 0x00ff00ffu) << 8u) | ((bits >> 8u) & 0x00ff00ffu);
+    bits = ((bits & 0x0f0f0f0fu) << 4u) | ((bits >> 4u) & 0x0f0f0f0fu);
+    bits = ((bits & 0x33333333u) << 2u) | ((bits >> 2u) & 0x33333333u);
+    bits = ((bits & 0x55555555u) << 1u) | ((bits >> 1u) & 0x55555555u);
+    return vec2f(f32(bits >> 8u) * 5.9604645e-8f, min(f32(index) / f32(max(count, 1u)), 0.99999994f));
 }
 
 // The cosine of the eye and the alpha that a texel of the table of reflectance stands for: squares of even steps.

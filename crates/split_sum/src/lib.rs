@@ -35,10 +35,13 @@ pub fn fresnel(f0: Vec3, cosine: f32) -> Vec3 {
 
 /// Returns a point of Hammersley's set.
 pub fn point(index: u32, count: u32) -> Vec2 {
-    Vec2::new(
-        (index.reverse_bits() >> 8) as f32 * 5.960_464_5e-8,
-        (index as f32 / count.max(1) as f32).min(0.999_999_94),
-    )
+    // As the shader does, which has no function for it in every language.
+    let mut bits = index.rotate_right(16);
+    bits = ((bits & 0x00ff_00ff) << 8) | ((bits >> 8) & 0x00ff_00ff);
+    bits = ((bits & 0x0f0f_0f0f) << 4) | ((bits >> 4) & 0x0f0f_0f0f);
+    bits = ((bits & 0x3333_3333) << 2) | ((bits >> 2) & 0x3333_3333);
+    bits = ((bits & 0x5555_5555) << 1) | ((bits >> 1) & 0x5555_5555);
+    Vec2::new((bits >> 8) as f32 * 5.960_464_5e-8, (index as f32 / count.max(1) as f32).min(0.999_999_94))
 }
 
 /// Returns the cosine of the eye and the alpha that a texel of the table of reflectance stands for.
