@@ -65,7 +65,7 @@ pub use environment::Environment;
 pub use error::SceneError;
 pub use lapidary_bvh_trace::Bvh;
 pub use light::Light;
-pub use material::{Coverage, Dispersion, Lobe, Material, Mineral};
+pub use material::{Coverage, Dispersion, Lobe, Material, Metal, Mineral};
 pub use medium::{Density, DensityGrid, Medium};
 pub use mesh::Mesh;
 pub use mesh_diagnosis::MeshDiagnosis;

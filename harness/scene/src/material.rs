@@ -65,6 +65,8 @@ pub struct Material {
     /// How much of the surface of an opaque body is a metal's, 0 to 1, as in glTF: that share has no diffuse light, and
     /// the base colour for what it reflects head on.
     pub metallic: f32,
+    /// Factors of the roughness, in green, and of `metallic`, in blue.
+    pub metallic_roughness_texture: Option<Texture>,
     /// A second distribution of slopes, mixed with that of `roughness`; `None` if there is one only.
     pub second_lobe: Option<Lobe>,
     /// Which of several bodies that share space is there: the one of the greatest number, and of equal ones the body of the
@@ -163,6 +165,7 @@ impl Material {
             thickness_texture: None,
             roughness: 1.0,
             metallic: 0.0,
+            metallic_roughness_texture: None,
             second_lobe: None,
             priority: 0,
             normals: Normals::Decided,
@@ -240,6 +243,7 @@ impl Material {
         match slot {
             TextureSlot::BaseColor => self.base_color_texture.as_ref(),
             TextureSlot::Normal => self.normal_texture.as_ref(),
+            TextureSlot::MetallicRoughness => self.metallic_roughness_texture.as_ref(),
             TextureSlot::Thickness => self.thickness_texture.as_ref(),
             TextureSlot::Transmission => self.transmission_texture.as_ref(),
             TextureSlot::DiffuseTransmission => self.diffuse_transmission_texture.as_ref(),
@@ -257,6 +261,7 @@ impl Material {
         match slot {
             TextureSlot::BaseColor => &mut self.base_color_texture,
             TextureSlot::Normal => &mut self.normal_texture,
+            TextureSlot::MetallicRoughness => &mut self.metallic_roughness_texture,
             TextureSlot::Thickness => &mut self.thickness_texture,
             TextureSlot::Transmission => &mut self.transmission_texture,
             TextureSlot::DiffuseTransmission => &mut self.diffuse_transmission_texture,
@@ -274,6 +279,7 @@ impl Material {
         match slot {
             TextureSlot::BaseColor => self.base_color != Vec3::ZERO || self.coverage.is_some(),
             TextureSlot::Normal => self.normal_scale != 0.0,
+            TextureSlot::MetallicRoughness => self.roughness > 0.0 || self.metallic > 0.0,
             TextureSlot::Thickness => self.thickness > 0.0,
             TextureSlot::Transmission => self.transmission > 0.0,
             TextureSlot::DiffuseTransmission => self.diffuse_transmission > 0.0,
@@ -348,6 +354,18 @@ impl Material {
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         !self.is_clear() && !self.scatters()
+    }
+
+    /// Whether a share of the surface, somewhere, is a metal's.
+    #[must_use]
+    pub fn is_metal(&self) -> bool {
+        self.is_opaque() && self.metallic > 0.0
+    }
+
+    /// Whether all of the surface is a metal's, which has no diffuse light.
+    #[must_use]
+    pub fn is_all_metal(&self) -> bool {
+        self.is_opaque() && self.metallic == 1.0 && self.metallic_roughness_texture.is_none()
     }
 
     /// Whether light is absorbed on its way through the body.

@@ -177,6 +177,8 @@ pub enum TextureSlot {
     BaseColor,
     /// Direction of the normal in tangent space, as 2 · RGB - 1.
     Normal,
+    /// Factors of the roughness, in green, and of the metallic share, in blue.
+    MetallicRoughness,
     /// Factor of the thickness, in green.
     Thickness,
     /// Factor of the transmission, in red.
@@ -187,8 +189,14 @@ pub enum TextureSlot {
 
 impl TextureSlot {
     /// All slots, each once.
-    pub const ALL: [Self; 5] =
-        [Self::BaseColor, Self::Normal, Self::Thickness, Self::Transmission, Self::DiffuseTransmission];
+    pub const ALL: [Self; 6] = [
+        Self::BaseColor,
+        Self::Normal,
+        Self::MetallicRoughness,
+        Self::Thickness,
+        Self::Transmission,
+        Self::DiffuseTransmission,
+    ];
 
     /// Returns the name of its member in a glTF file.
     #[must_use]
@@ -196,6 +204,7 @@ impl TextureSlot {
         match self {
             Self::BaseColor => "baseColorTexture",
             Self::Normal => "normalTexture",
+            Self::MetallicRoughness => "metallicRoughnessTexture",
             Self::Thickness => "thicknessTexture",
             Self::Transmission => "transmissionTexture",
             Self::DiffuseTransmission => "diffuseTransmissionTexture",
@@ -207,7 +216,11 @@ impl TextureSlot {
     pub const fn encoding(self) -> Encoding {
         match self {
             Self::BaseColor => Encoding::Srgb,
-            Self::Normal | Self::Thickness | Self::Transmission | Self::DiffuseTransmission => Encoding::Linear,
+            Self::Normal
+            | Self::MetallicRoughness
+            | Self::Thickness
+            | Self::Transmission
+            | Self::DiffuseTransmission => Encoding::Linear,
         }
     }
 }

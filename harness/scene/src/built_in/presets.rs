@@ -2,7 +2,7 @@
 
 use super::materials::{by_abbe, diamond, emerald, measured, quartz, ruby, sapphire, sized};
 use super::{stone, translucent};
-use crate::{Material, Medium, Mineral, Object};
+use crate::{Material, Medium, Metal, Mineral, Object};
 
 /// A material that fits itself to a body's size.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +29,8 @@ const MOISSANITE: f32 = 2.647;
 /// Lett. 19, 53 (1971), by the fit n² = 1 + 5.5394 λ²/(λ² - 0.026945) of refractiveindex.info.
 const MOISSANITE_ABBE: f32 = 25.5;
 
-/// All presets: clear stones, then what scatters light.
-pub const PRESETS: [Preset; 11] = [
+/// All presets: clear stones, metals, then what scatters light.
+pub const PRESETS: [Preset; 19] = [
     clear("diamond", "Sellmeier equation of Peter (1923)", diamond),
     clear("ruby", "corundum's ordinary ray (Malitson), the red of pigeon's blood", ruby),
     clear("sapphire", "corundum's ordinary ray (Malitson), royal blue", sapphire),
@@ -42,6 +42,14 @@ pub const PRESETS: [Preset; 11] = [
         moissanite,
     ),
     clear("zirconia", "cubic zirconia (Wood)", zirconia),
+    metal(Metal::Gold, "fine gold, n and k of Johnson and Christy (1972)", || Metal::Gold.material()),
+    metal(Metal::YellowGold, "18 carats, 3N: the mean of its parts", || Metal::YellowGold.material()),
+    metal(Metal::RoseGold, "18 carats, 5N: the mean of its parts", || Metal::RoseGold.material()),
+    metal(Metal::WhiteGold, "plated with rhodium (Weaver, Olson and Lynch, 1977)", || Metal::WhiteGold.material()),
+    metal(Metal::Silver, "n and k of Johnson and Christy (1972)", || Metal::Silver.material()),
+    metal(Metal::Platinum, "n and k of Tselin and others (2024)", || Metal::Platinum.material()),
+    metal(Metal::Copper, "n and k of Johnson and Christy (1972)", || Metal::Copper.material()),
+    metal(Metal::Steel, "stainless, n and k of Karlsson and Ribbing (1982)", || Metal::Steel.material()),
     scattering("jade", "green jadeite, polished; coefficients chosen by eye", || translucent::material("jade")),
     scattering("marble", "Jensen and others (2001)", stone::marble),
     scattering("wax", "bleached wax; coefficients chosen by eye", || translucent::material("wax")),
@@ -50,6 +58,10 @@ pub const PRESETS: [Preset; 11] = [
 
 const fn clear(name: &'static str, description: &'static str, material: fn() -> Material) -> Preset {
     Preset { name, description, material, extent: STONE }
+}
+
+const fn metal(metal: Metal, description: &'static str, material: fn() -> Material) -> Preset {
+    Preset { name: metal.name(), description, material, extent: STONE }
 }
 
 const fn scattering(name: &'static str, description: &'static str, material: fn() -> Material) -> Preset {
@@ -113,7 +125,9 @@ mod tests {
                 assert_eq!(preset.material(extent).problem(), None, "{} of {extent}", preset.name);
             }
             assert_eq!(Preset::named(preset.name).map(|found| found.name), Some(preset.name));
-            assert_ne!(preset.material(1.0).is_clear(), preset.material(1.0).scatters(), "{}", preset.name);
+            let material = preset.material(1.0);
+            let kinds = [material.is_clear(), material.is_all_metal(), material.scatters()];
+            assert_eq!(kinds.into_iter().filter(|is_one| *is_one).count(), 1, "{}", preset.name);
         }
     }
 

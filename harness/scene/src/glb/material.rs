@@ -105,6 +105,9 @@ pub(super) fn material(material: &Material, textures: &mut Textures) -> Value {
     if let Some((name, texture)) = reference(TextureSlot::BaseColor) {
         written["pbrMetallicRoughness"][name] = texture;
     }
+    if let Some((name, texture)) = reference(TextureSlot::MetallicRoughness) {
+        written["pbrMetallicRoughness"][name] = texture;
+    }
     if let Some((name, texture)) = reference(TextureSlot::Normal) {
         written[name] = texture;
         if material.normal_scale != 1.0 {

@@ -76,7 +76,7 @@ impl<'a> Materials<'a> {
         user: &str,
     ) -> Result<Material, GltfError> {
         let Some(index) = index else {
-            return Ok(Material::standard());
+            return Ok(Material { metallic: 1.0, ..Material::standard() });
         };
         let json = item(&self.root.materials, "material", index, || user.to_owned())?;
         let part = || designation("material", index, json.name.as_deref());
@@ -127,13 +127,10 @@ fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
     if let Some(value) = archived.member(specular_glossiness::DIFFUSE_TEXTURE) {
         found.push(reference(TextureSlot::BaseColor, specular_glossiness::DIFFUSE_TEXTURE, value)?);
     } else if let (Some(info), false) = (&json.pbr_metallic_roughness.base_color_texture, archived.is_there()) {
-        let extensions = info.extensions.as_ref().map(|all| &all.others);
-        found.push(Reference {
-            slot: TextureSlot::BaseColor,
-            index: info.index.value(),
-            set: info.tex_coord,
-            extensions,
-        });
+        found.push(of_core(TextureSlot::BaseColor, info));
+    }
+    if let (Some(info), false) = (&json.pbr_metallic_roughness.metallic_roughness_texture, archived.is_there()) {
+        found.push(of_core(TextureSlot::MetallicRoughness, info));
     }
     if let Some(info) = &json.normal_texture {
         let extensions = info.extensions.as_ref().map(|all| &all.others);
@@ -148,6 +145,12 @@ fn references(json: &JsonMaterial) -> Result<Vec<Reference<'_>>, String> {
         found.push(reference(slot, slot.name(), value)?);
     }
     Ok(found)
+}
+
+/// Returns core glTF's reference to a texture.
+fn of_core(slot: TextureSlot, info: &Info) -> Reference<'_> {
+    let extensions = info.extensions.as_ref().map(|all| &all.others);
+    Reference { slot, index: info.index.value(), set: info.tex_coord, extensions }
 }
 
 /// Reads an extension's reference to a texture from its member `name`.

@@ -128,13 +128,7 @@ fn primitive(root: &Root, primitive: &Primitive, mesh: User<'_>, lacking: &mut L
     if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
         lacking.note("morph targets", "`targets`".to_owned(), "the body is drawn without them", mesh);
     }
-    if primitive.material.is_none() {
-        let default = "the default material, a metal,".to_owned();
-        lacking.note("metal", default, DIELECTRIC, mesh);
-    }
 }
-
-const DIELECTRIC: &str = "drawn as a dielectric";
 
 fn textures(json: &JsonMaterial, known: &Known, user: User<'_>, lacking: &mut Lacking) {
     for name in texture_members(json).filter(|name| !is_read(name)) {
@@ -168,7 +162,7 @@ fn texture_members(json: &JsonMaterial) -> impl Iterator<Item = &str> {
     of_core.chain(members.map(String::as_str).filter(|member| member.ends_with("Texture")))
 }
 
-/// Lists the properties of a surface that a dielectric does not have.
+/// Lists the properties of a surface that are not drawn.
 fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mut Lacking) {
     unknown_extensions(extensions(json), user, lacking);
     let factors = &json.pbr_metallic_roughness;
@@ -176,9 +170,8 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
 
     // 1 is also the default if a file omits the member, as files of clear bodies do.
     let metallic = material::factors(json).map_or(0.0, |factors| factors.metallic);
-    let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
-    if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
-        lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
+    if metallic > 0.0 && metallic < 1.0 && !material.is_metal() {
+        lacking.note("metal", "`metallicFactor` above 0".to_owned(), "drawn without metal", user);
     }
     if let Ok(Some(diamond)) = Diamond::of(extensions(json))
         && material.ior != diamond.index as f32

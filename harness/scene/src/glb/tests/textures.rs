@@ -81,7 +81,7 @@ fn an_image_is_written_once_as_png() {
     // The same texels in an image of their own are another image.
     scene.objects.push(Object { material: material(&texels(255)), ..scene.objects[0].clone() });
     let json = json_of(&scene);
-    assert_eq!((json["images"].as_array().unwrap().len(), json["textures"].as_array().unwrap().len()), (2, 10));
+    assert_eq!((json["images"].as_array().unwrap().len(), json["textures"].as_array().unwrap().len()), (2, 12));
     assert_eq!(json["images"][0]["mimeType"], "image/png");
     let bytes = write(&scene).unwrap();
     let (_, text) = chunk(&bytes, 12);
@@ -104,6 +104,7 @@ fn textures_without_effect_are_left_out() {
         transmission: 0.0,
         diffuse_transmission: 0.0,
         thickness: 0.0,
+        roughness: 0.0,
         ..all
     };
     scene.objects[0].material = without;

@@ -67,8 +67,7 @@ fn textures_of_every_slot_are_named() {
             },
         });
     });
-    let not_read =
-        ["diffuseTransmissionColorTexture", "emissiveTexture", "metallicRoughnessTexture", "occlusionTexture"];
+    let not_read = ["diffuseTransmissionColorTexture", "emissiveTexture", "occlusionTexture"];
     let says = |slot: &str| format!("textures: `{slot}` of material `gem` (a factor is drawn alone)");
     assert_eq!(found, not_read.into_iter().map(says).collect::<Vec<_>>());
 }
@@ -82,21 +81,18 @@ fn users_are_counted_and_the_first_is_named() {
         d["meshes"][0]["primitives"] = json!([primitive(1), primitive(0), primitive(0)]);
         d["nodes"] = json!([{"mesh": 0, "children": [1]}, {"mesh": 0}]);
     });
-    assert_eq!(
-        found,
-        [
-            "emission: `emissiveFactor` of 2 materials, first `table` (nothing shines by itself)",
-            "metal: `metallicFactor` above 0 of 2 materials, first `table` (drawn as a dielectric)",
-        ]
-    );
+    assert_eq!(found, ["emission: `emissiveFactor` of 2 materials, first `table` (nothing shines by itself)"]);
 }
 
 #[test]
-fn what_is_no_dielectric_surface_is_named() {
+fn what_a_surface_lacks_is_named() {
     let one = |members: Value, says: &str| assert_eq!(of_material(members), [says]);
-    let metal = "metal: `metallicFactor` above 0 of material `gem` (drawn as a dielectric)";
-    one(json!({"pbrMetallicRoughness": {}}), metal);
-    one(json!({"pbrMetallicRoughness": {"metallicFactor": 0.1}}), metal);
+    assert_eq!(of_material(json!({"pbrMetallicRoughness": {"metallicFactor": 0.1}})), [""; 0]);
+    let in_glass = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
+    one(
+        json!({"pbrMetallicRoughness": {"metallicFactor": 0.1}, "extensions": in_glass}),
+        "metal: `metallicFactor` above 0 of material `gem` (drawn without metal)",
+    );
     assert_eq!(of_material(json!({"alphaMode": "MASK"})), [""; 0]);
     one(
         json!({"emissiveFactor": [0, 0, 1]}),
@@ -118,8 +114,9 @@ fn what_is_no_dielectric_surface_is_named() {
     // A transmissive material is not a metal, although glTF's default is one.
     let clear = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
     assert_eq!(of_material(json!({"pbrMetallicRoughness": {"roughnessFactor": 0}, "extensions": clear})), [""; 0]);
-    let default = "metal: the default material, a metal, of mesh 0 (drawn as a dielectric)";
-    assert_eq!(load_changed(|_| ()).unwrap().lacking, [default]);
+    // The default material is one.
+    let scene = load_changed(|_| ()).unwrap();
+    assert!(scene.objects[0].material.is_all_metal() && scene.lacking.is_empty());
 }
 
 #[test]
