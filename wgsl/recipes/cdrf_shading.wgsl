@@ -3,8 +3,9 @@
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
 //   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, diffusion, environment, fresnel, half_space, microfacet, reflective_shadow_map
+// requires: split_sum
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, translucent_shadow
-// parts: stone_shadow, harmonics, reflection, scattering_law, texture_tangents, material_textures
+// parts: stone_shadow, harmonics, reflection, metal, scattering_law, texture_tangents, material_textures
 // parts: sample_rank
 // compares: curvature
 //
@@ -88,6 +89,7 @@ struct CdrfMaterial {
     normal_place: TexturePlace,
     thickness_place: TexturePlace,
     transmission_place: TexturePlace,
+    roughness_place: TexturePlace,
     // Share of the light that enters, 0 to 1.
     transmission: f32,
     // Share of what is behind that the surface covers, without its image.
@@ -98,6 +100,8 @@ struct CdrfMaterial {
     body: u32,
     // Colour of the light that does not enter, relative to `base_color`.
     rest: vec3f,
+    // Share of the surface that is a metal's, without its image.
+    metallic: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -138,6 +142,7 @@ struct CdrfVertex {
     @location(10) color: vec3f,  //+vertex_color
     @location(11) thickness_uv: vec2f,  //+thickness_texture
     @location(12) transmission_uv: vec2f,  //+transmission_texture
+    @location(13) roughness_uv: vec2f,  //+roughness_texture
 }
 
 @vertex
@@ -185,6 +190,12 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         transmission_uv = texture_place(material.transmission_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
     }
     //+transmission_texture }
+    //+roughness_texture {
+    var roughness_uv = vec2f(0.0f);
+    if (EFFECT_ROUGHNESS_TEXTURE) {
+        roughness_uv = texture_place(material.roughness_place, vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    }
+    //+roughness_texture }
     //+vertex_color {
     var color = vec3f(1.0f);
     if (EFFECT_VERTEX_COLOR) {
@@ -207,11 +218,12 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
         color,  //+vertex_color
         thickness_uv,  //+thickness_texture
         transmission_uv,  //+transmission_texture
+        roughness_uv,  //+roughness_texture
     );
 }
 
 // The derivatives at a pixel, the curvature that follows from them, the factor of the lengths by which light
-// spreads, and the share of the light that enters.
+// spreads, the share of the light that enters, the width of the microfacets' slopes, and the share that is a metal's.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
@@ -220,6 +232,8 @@ struct CdrfSurface {
     curvature: f32,
     thickness: f32,
     transmission: f32,
+    alpha: f32,
+    metallic: f32,
 }
 
 // The surface at a pixel. Call it outside all branches: derivatives need the neighbouring pixels.
@@ -245,7 +259,19 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     if (EFFECT_TRANSMISSION_TEXTURE) {
         transmission *= textureSample(transmission_texture, transmission_sampler, input.transmission_uv).a;
     }
-    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness, transmission);
+    var alpha = material.alpha;
+    var metallic = 0.0f;
+    if (EFFECT_METAL) {
+        metallic = material.metallic;
+    }
+    if (EFFECT_ROUGHNESS_TEXTURE) {
+        let texel = textureSample(roughness_texture, roughness_sampler, input.roughness_uv);
+        alpha *= texel.g * texel.g;
+        metallic *= texel.b;
+    }
+    return CdrfSurface(
+        position_x, position_y, normal_x, normal_y, curvature, thickness, transmission, alpha, metallic
+    );
 }
 
 // The unit normal. If interpolation between opposite normals leaves no direction, the surface
@@ -562,16 +588,28 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
 }
 
 // Radiance that the surface reflects from all lights towards the eye, without spreading it.
-fn cdrf_highlights(position: vec3f, normals: CdrfNormals, toward_eye: vec3f) -> vec3f {
+fn cdrf_highlights(
+    position: vec3f, surface: CdrfSurface, normals: CdrfNormals, base_color: vec3f, toward_eye: vec3f
+) -> vec3f {
+    //+metal {
+    var metal = Metal(vec3f(0.0f), 0.0f, vec3f(0.0f), vec3f(0.0f));
+    if (EFFECT_METAL) {
+        metal = metal_seen(base_color, surface.alpha, dot(normals.sharp, toward_eye));
+    }
+    //+metal }
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
-        var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, material.alpha);
+        var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, surface.alpha);
         if (EFFECT_SECOND_LOBE) {
             let second = reflection_highlight(
                 arrival, normals.sharp, toward_eye, material.index, material.second_alpha
             );
             highlight = mix(highlight, second, material.second_weight);
+        }
+        if (EFFECT_METAL) {
+            let of_metal = metal_highlight(metal, arrival, normals.sharp, toward_eye);
+            highlight = mix(highlight, of_metal, surface.metallic);
         }
         if (EFFECT_SHADOW) {
             highlight *= cdrf_visible(index, dot(normals.sharp, arrival.direction), position, normals.coarse);
@@ -618,11 +656,21 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let inside = 0.31830987f * base_color * received;
     var radiance = inside;
     if (EFFECT_REFLECTION) {
-        radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, material.alpha);
+        radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, surface.alpha);
+    }
+    if (EFFECT_METAL) {
+        let metal = metal_seen(base_color, surface.alpha, dot(normals.sharp, toward_eye));
+        let mirrored = reflect(-toward_eye, normals.sharp);
+        var around = metal_surroundings(mirrored, surface.alpha);
+        if (EFFECT_REFLECTION) {
+            // The first level is the environment at the size of the map.
+            around = surroundings_radiance(mirrored);
+        }
+        radiance = mix(radiance, metal.reflectance * around, surface.metallic);
     }
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
-            radiance += cdrf_highlights(input.position, normals, toward_eye);
+            radiance += cdrf_highlights(input.position, surface, normals, base_color, toward_eye);
         }
     }
     if (EFFECT_COVERAGE) {

@@ -4,9 +4,9 @@
 //   rays); Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", Journal of Graphics
 //   Tools 7(2), 2002 (priorities). Own: the strongest ray first.
 // requires: absorption, bvh_trace, cdrf, curved_triangle, environment, fresnel, half_space, microfacet
-// requires: proxy_geometry, random_walk, refraction
+// requires: proxy_geometry, random_walk, refraction, split_sum
 // parts: surroundings, lights, glints, harmonics, trace_nearest, sample_rank, texture_tangents
-// parts: scene_images, scattering_law
+// parts: scene_images, scattering_law, metal
 //
 // Draw each clear body with 3 vertices per triangle, without a vertex buffer, and cull back faces;
 // set TRAVERSAL_TWO_SIDED. At every surface a ray is split into its reflection and its refraction;
@@ -83,6 +83,8 @@ struct SceneBody {
     free_path: vec3f,
     // Its law, without a boundary.
     law: ScatteringLaw,
+    // Share of an opaque body's surface that is a metal's.
+    metallic: f32,
 }
 
 struct SceneStart {
@@ -292,6 +294,20 @@ fn scene_sent(base_color: vec3f, position: vec3f, normal: vec3f) -> vec3f {
     }
     return 0.318309886f * base_color * irradiance;
 }
+
+//+metal {
+// Radiance that a metal sends in a direction, without shadows and other bodies.
+fn scene_metal(body: SceneBody, base_color: vec3f, position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
+    let metal = metal_seen(base_color, body.alpha, dot(normal, toward_eye));
+    var radiance = metal.reflectance * metal_surroundings(reflect(-toward_eye, normal), body.alpha);
+    if (body.alpha > 0.0f) {
+        for (var number = 0u; number < arrayLength(&lights); number++) {
+            radiance += metal_highlight(metal, light_arrival(lights[number], position), normal, toward_eye);
+        }
+    }
+    return radiance;
+}
+//+metal }
 
 //+cdrf {
 // Irradiance of one channel by its cosine with the light, after the drift of light that scatters.
@@ -567,6 +583,14 @@ fn scene_surface(arriving: SceneRay, hit: BvhTraceHit, wavelength: u32) {
                     sent = scene_spread(body, painted * body.base_color, ray.position, normal, curvature, cosine);
                 }
                 //+cdrf }
+            }
+            if (EFFECT_METAL) {
+                //+metal {
+                if (body.metallic > 0.0f) {
+                    let metal = scene_metal(body, painted * body.base_color, ray.position, normal, -ray.direction);
+                    sent = mix(sent, metal, body.metallic);
+                }
+                //+metal }
             }
             var covered = ray.throughput;
             if (EFFECT_COVERAGE) {

@@ -155,6 +155,8 @@ impl Case<'_> {
             Effect::EnvironmentMap => self.environment_map(),
             Effect::BaseColorTexture => self.image(TextureSlot::BaseColor),
             Effect::NormalTexture => self.image(TextureSlot::Normal),
+            Effect::RoughnessTexture if self.is_gem() => off("a clear body has one roughness"),
+            Effect::RoughnessTexture => self.image(TextureSlot::MetallicRoughness),
             Effect::ThicknessTexture if self.is_gem() => off("light goes through the mesh itself"),
             Effect::ThicknessTexture => self.on_light_that_spreads(self.image(TextureSlot::Thickness)),
             Effect::PartialTransmission => self.partial_transmission(),
@@ -164,6 +166,7 @@ impl Case<'_> {
             Effect::Microfacet => self.microfacet(),
             Effect::SecondLobe => self.second_lobe(),
             Effect::Reflection => self.reflection(),
+            Effect::Metal => self.metal(),
             Effect::Spot => self.spot(),
         }
     }
@@ -434,6 +437,8 @@ impl Case<'_> {
             on("light around falls on what is matt in part")
         } else if self.is_gem() {
             off("a clear surface sends nothing back diffusely")
+        } else if self.material.is_all_metal() && self.draws_metal() {
+            off("a metal sends nothing back diffusely")
         } else {
             on("the surface sends light from all around back")
         }
@@ -542,7 +547,7 @@ impl Case<'_> {
         if self.is_gem() {
             return off("clear bodies are drawn polished");
         }
-        if ior == 1.0 {
+        if ior == 1.0 && !self.draws_metal() {
             return off("ior 1: nothing reflects");
         }
         if roughness == 0.0 {
@@ -572,13 +577,28 @@ impl Case<'_> {
         if self.is_gem() {
             return off("a clear surface's reflection is part of its recipe");
         }
-        if ior == 1.0 {
+        if ior == 1.0 && !self.draws_metal() {
             return off("ior 1: nothing reflects");
         }
         if roughness > 0.0 {
             return off(format!("roughness {}: the environment's image would be blurred", short(roughness)));
         }
         on(format!("roughness 0, ior {}", short(ior)))
+    }
+
+    /// Whether what a metal reflects is drawn.
+    fn draws_metal(&self) -> bool {
+        self.metal().0 && !self.request.without.has(Effect::Metal)
+    }
+
+    fn metal(&self) -> Answer {
+        if self.is_gem() {
+            return self.metal_met();
+        }
+        if !self.material.is_metal() {
+            return off("no metal");
+        }
+        self.drawn_by_rung(format!("metallicFactor {}", short(self.material.metallic)))
     }
 
     fn spot(&self) -> Answer {

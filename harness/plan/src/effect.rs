@@ -105,6 +105,8 @@ effects! {
     BaseColorTexture = "base_color_texture", "EFFECT_BASE_COLOR_TEXTURE";
     /// Slopes of the surface that are too fine for the mesh, by an image.
     NormalTexture = "normal_texture", "EFFECT_NORMAL_TEXTURE";
+    /// Roughness, and what of a surface is a metal's, which vary over it by an image.
+    RoughnessTexture = "roughness_texture", "EFFECT_ROUGHNESS_TEXTURE";
     /// Spread of light that varies over the surface, by an image.
     ThicknessTexture = "thickness_texture", "EFFECT_THICKNESS_TEXTURE";
     /// Light that does not enter a body, and is reflected as by an opaque one.
@@ -121,6 +123,8 @@ effects! {
     SecondLobe = "second_lobe", "EFFECT_SECOND_LOBE";
     /// Reflection of the environment in a polished surface.
     Reflection = "reflection", "EFFECT_REFLECTION";
+    /// What a metal reflects of the environment, rough as it is, and of the lights.
+    Metal = "metal", "EFFECT_METAL";
     /// Lights that shine into a cone.
     Spot = "spot", "EFFECT_SPOT";
 }

@@ -1,5 +1,5 @@
 // material_textures: what the images of a material hold at a point: its colour, the slopes of its
-//   surface, how thick it is, and whether light enters.
+//   surface, how rough and thick it is, and whether light enters.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Khronos Group, glTF 2.0, sections 3.9.2 and 3.9.3; Penner, "Pre-Integrated Skin Shading", GPU Pro
 //   2, 2011, for normals blurred per colour.
@@ -19,6 +19,8 @@ override EFFECT_THICKNESS_TEXTURE: bool = false;
 // Where light enters varies over the surface. Called for by a material's diffuseTransmissionTexture on a body
 // that cdrf draws.
 override EFFECT_TRANSMISSION_TEXTURE: bool = false;
+// Roughness, and what of the surface is a metal's, vary over it. Called for by a material's metallicRoughnessTexture.
+override EFFECT_ROUGHNESS_TEXTURE: bool = false;
 // The diffuse colour varies from vertex to vertex. Called for by a mesh's COLOR_0.
 override EFFECT_VERTEX_COLOR: bool = false;
 
@@ -43,6 +45,9 @@ struct TexturePlace {
 // A share in alpha.
 @group(1) @binding(18) var transmission_texture: texture_2d<f32>;
 @group(1) @binding(19) var transmission_sampler: sampler;
+// Factors of the roughness, in green, and of the share that is a metal's, in blue.
+@group(1) @binding(20) var roughness_texture: texture_2d<f32>;
+@group(1) @binding(21) var roughness_sampler: sampler;
 
 fn texture_place(place: TexturePlace, uv: vec2f) -> vec2f {
     return vec2f(dot(place.u, vec3f(uv, 1.0f)), dot(place.v, vec3f(uv, 1.0f)));

@@ -333,6 +333,14 @@ impl Case<'_> {
         }
     }
 
+    /// Answers for a metal that light through this body meets.
+    pub(super) fn metal_met(&self) -> Answer {
+        match self.first_met(|object| object.material.is_metal()) {
+            Some(object) if self.is_among() => on(format!("{} is a metal", object.name)),
+            _ => off("light meets no metal"),
+        }
+    }
+
     /// Answers for the colours of vertices of this body, or of any that its light meets.
     pub(super) fn colors_met(&self) -> Answer {
         match self.first_met(|object| !object.mesh.colors.is_empty()) {

@@ -166,10 +166,10 @@ impl<'gpu> Builder<'gpu> {
         what: &str,
         format: wgpu::TextureFormat,
         size: [u32; 3],
-        (levels, contents): (u32, Vec<u8>),
+        (levels, contents): (u32, impl Into<Contents>),
     ) -> Texture {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let (dimension, contents) = (wgpu::TextureDimension::D2, Contents::Bytes(contents));
+        let (dimension, contents) = (wgpu::TextureDimension::D2, contents.into());
         Texture(self.resource(what, ResourceKind::Texture { size, levels, dimension, format, usage, contents }))
     }
 

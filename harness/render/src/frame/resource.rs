@@ -65,6 +65,12 @@ pub enum Contents {
     LeftOut,
 }
 
+impl From<Vec<u8>> for Contents {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self::Bytes(bytes)
+    }
+}
+
 impl Resource {
     /// Drops its bytes, which are somewhere else.
     pub(super) fn leave_out(&mut self) {

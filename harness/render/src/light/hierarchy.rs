@@ -228,7 +228,9 @@ fn record(material: &Material, colors: &[Vec3]) -> Record {
     let color = if material.is_clear() { material.base_color } else { thickness::color(material, colors) };
     let record = Record::new("SceneBody").with("base_color", color).with("index", material.ior);
     let record = record.with("absorption", absorption).with("kind", kind);
-    let record = record.with("alpha", material.facet_slope()).with("clear", clear);
+    let metallic = if material.is_metal() { material.metallic } else { 0.0 };
+    let alpha = if metallic > 0.0 { material.roughness * material.roughness } else { material.facet_slope() };
+    let record = record.with("alpha", alpha).with("clear", clear).with("metallic", metallic);
     let (mut free_path, mut law) = (Vec3::ZERO, ScatteringLaw::default());
     if material.scatters() {
         // Light that is neither scattered nor absorbed has no mean free path, and does not drift.

@@ -2,6 +2,7 @@
 //! frame when the first pipeline reads it, and only once.
 
 use super::beside::{self, Beside};
+use super::blurred;
 use super::environment;
 use super::from_bodies::{self, Body};
 use super::hierarchy::Hierarchy;
@@ -33,6 +34,7 @@ pub(crate) struct Lighting<'a> {
     hierarchy: OnceCell<Hierarchy>,
     beside: OnceCell<Beside>,
     glints: OnceCell<Buffer>,
+    blurred: OnceCell<[(u32, Bound); 3]>,
     /// What keeps light from others.
     pub(crate) shapes: Shapes,
     /// Size of the largest picture in samples.
@@ -44,7 +46,7 @@ impl<'a> Lighting<'a> {
     /// size in samples.
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
         let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
-        let (hierarchy, beside, glints) = Default::default();
+        let (hierarchy, beside, glints, blurred) = Default::default();
         Self {
             scene,
             settings,
@@ -57,6 +59,7 @@ impl<'a> Lighting<'a> {
             hierarchy,
             beside,
             glints,
+            blurred,
             shapes,
             size,
         }
@@ -115,6 +118,15 @@ impl<'a> Lighting<'a> {
         Ok(*self.beside.get_or_init(|| made))
     }
 
+    /// Returns the environment blurred for metals, and the table of what they reflect.
+    fn blurred(&self, builder: &mut Builder<'_>) -> Result<[(u32, Bound); 3], RenderError> {
+        if let Some(known) = self.blurred.get() {
+            return Ok(*known);
+        }
+        let made = builder.of_object("", |builder| blurred::bound(builder, &self.settings.environment))?;
+        Ok(*self.blurred.get_or_init(|| made))
+    }
+
     /// Returns the number of an object that is borrowed from the scene.
     pub(crate) fn number_of(&self, object: &Object) -> usize {
         let number = self.scene.objects.iter().position(|other| std::ptr::eq(other, object));
@@ -170,7 +182,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 20 of group 0; 4, 5
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3, 7 to 9 and 11 to 23 of group 0; 4, 5
     /// and 10 are shadow maps, 6 is the view of the screen.
     pub(crate) fn shared(
         &self,
@@ -200,6 +212,9 @@ impl<'a> Lighting<'a> {
         if builder.binds(pipeline, 0, beside::BINDINGS[0]) {
             let Beside { nodes, corners } = self.beside(builder)?;
             shared.extend(beside::BINDINGS.into_iter().zip([nodes.into(), corners.into()]));
+        }
+        if builder.binds(pipeline, 0, blurred::BINDINGS[0]) {
+            shared.extend(self.blurred(builder)?);
         }
         if Hierarchy::is_read(builder, pipeline) {
             shared.extend(self.hierarchy(builder)?.shared(builder, pipeline)?);

@@ -1,6 +1,7 @@
 //! What lights a body: the scene's lights, the environment, and other bodies, by their bounds or by their picture.
 
 pub(crate) mod beside;
+pub(crate) mod blurred;
 pub(crate) mod environment;
 pub(crate) mod from_bodies;
 pub(crate) mod hierarchy;

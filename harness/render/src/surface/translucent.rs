@@ -185,6 +185,8 @@ fn record_of((material, color): (&Material, Vec3), decisions: &Decisions, number
         .with("cutoff", cutoff.unwrap_or(-1.0))
         .with("body", number)
         .with("rest", material.base_color / color)
+        .with("metallic", material.metallic)
+        .within("roughness_place", |record| textures::place(record, material.metallic_roughness_texture.as_ref()))
 }
 
 /// Returns the material's widths, made safe.

@@ -54,7 +54,7 @@ pub(super) fn of_image(texels: &Texels, encoding: Encoding) -> (u32, Vec<u8>) {
 }
 
 /// Returns the levels of an image of linear texels, down to a single one.
-pub(super) fn of_linear(size: [u32; 2], texels: Vec<Vec4>) -> Vec<Vec<Vec4>> {
+pub(crate) fn of_linear(size: [u32; 2], texels: Vec<Vec4>) -> Vec<Vec<Vec4>> {
     let mut levels = vec![texels];
     for level in 1..count(size) {
         let before = &levels[level as usize - 1];

@@ -1,6 +1,6 @@
 //! Images of materials in a frame, as the part `material_textures` reads them.
 
-mod levels;
+pub(crate) mod levels;
 mod normals;
 
 use crate::frame::record::Record;
@@ -14,6 +14,7 @@ const BASE_COLOR: [u32; 2] = [11, 12];
 const NORMAL: [u32; 2] = [13, 14];
 const THICKNESS: [u32; 2] = [16, 17];
 const TRANSMISSION: [u32; 2] = [18, 19];
+const ROUGHNESS: [u32; 2] = [20, 21];
 
 /// Fills a `TexturePlace` for a texture; the identity for none.
 pub(crate) fn place(record: Record, texture: Option<&Texture>) -> Record {
@@ -41,6 +42,7 @@ pub(crate) fn bound(
         (&material.base_color_texture, "base colour image", "base colour image's sampler", BASE_COLOR),
         (&material.thickness_texture, "thickness image", "thickness image's sampler", THICKNESS),
         (&material.diffuse_transmission_texture, "transmission image", "transmission image's sampler", TRANSMISSION),
+        (&material.metallic_roughness_texture, "roughness image", "roughness image's sampler", ROUGHNESS),
     ] {
         let (Some(texture), true) = (slot, reads(builder, bindings)) else { continue };
         let texels = &texture.texels;

@@ -114,7 +114,7 @@ fn every_slot(factor: f32) -> Value {
     let texture = json!({"index": 0});
     json!({
         "name": "gem",
-        "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [factor, factor, factor, 1], "baseColorTexture": texture, "metallicRoughnessTexture": texture},
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": factor, "baseColorFactor": [factor, factor, factor, 1], "baseColorTexture": texture, "metallicRoughnessTexture": texture},
         "normalTexture": {"index": 0, "scale": factor},
         "extensions": {
             "KHR_materials_volume": {"thicknessFactor": factor, "thicknessTexture": texture},
