@@ -162,6 +162,12 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         object.material.diffuse_transmission = 1.0;
         object.material.diffuse_transmission_texture = object.material.base_color_texture.clone();
     }
+    let mut gilded = one("head")?;
+    for object in &mut gilded.objects {
+        let image = object.material.base_color_texture.clone();
+        object.material = Material { metallic: 0.5, roughness: 0.5, ..Material::standard() };
+        object.material.metallic_roughness_texture = image;
+    }
     let mut lantern = one("wax")?;
     let position = lantern.bounds().centre();
     lantern.lights.push(Light::Point { position, intensity: Vec3::ONE });
@@ -350,6 +356,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
                 (Effect::PartialTransmission, Effect::Cdrf),
                 (Effect::TransmissionTexture, Effect::PartialTransmission),
             ],
+        },
+        Case {
+            name: "head, a metal in part",
+            scene: gilded,
+            settings: settings("lambert"),
+            effects: &[Effect::Metal, Effect::RoughnessTexture, Effect::Microfacet],
+            stands_on: &[],
         },
         Case {
             name: "vitrine, table and ruby",

@@ -83,9 +83,10 @@ fn follow(
     picture: &mut Picture,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<(), RenderError> {
-    // What is opaque is drawn matte. The rule of the effect `reflection` says whether it also reflects.
+    // What is opaque and no metal is drawn matte. The rule of the effect `reflection` says whether it also reflects.
     let reflects = |Material { ior, roughness, .. }: &Material| *ior != 1.0 && *roughness == 0.0;
-    let polished = |object: &&Object| object.material.is_opaque() && reflects(&object.material);
+    let is_matte = |material: &Material| material.is_opaque() && !material.is_all_metal();
+    let polished = |object: &&Object| is_matte(&object.material) && reflects(&object.material);
     if let Some(opaque) = scene.objects.iter().find(polished) {
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }

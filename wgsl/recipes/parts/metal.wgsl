@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the module split_sum.
 //
-// A recipe adds: the modules environment, microfacet and split_sum, the part lights. Both tables are bound here; the recipe
-// split_sum_tables bakes them.
+// A recipe adds: the modules environment, microfacet and split_sum, the part lights. Both tables are bound here; the
+// recipe split_sum_tables bakes them.
 
 // A share of the surface is a metal's: it sends no light back diffusely, and its base colour is what it reflects head
 // on. Called for by a metallicFactor above 0 of an opaque body.
@@ -12,8 +12,8 @@ override EFFECT_METAL: bool = false;
 // Levels of the environment beyond the first.
 const METAL_LEVELS: f32 = 6.0f;
 
-// The environment as a map of directions, its levels blurred for the roughnesses 0, 1/6, ... 1. Radiance is red, green
-// and blue, times alpha.
+// The environment by direction, its levels blurred for the roughnesses 0, 1/6, ... 1. Radiance is the colour times
+// alpha.
 @group(0) @binding(21) var blurred: texture_2d<f32>;
 // Repeats along u.
 @group(0) @binding(22) var blurred_sampler: sampler;

@@ -132,6 +132,11 @@ impl Bodies {
         self.mattes.sent_in_part((place, painted), flat, point, self.paint(place))
     }
 
+    /// Returns the matte bodies and metals, and the light on them.
+    pub(super) fn mattes(&self) -> &Mattes {
+        &self.mattes
+    }
+
     /// Returns the images and colours of vertices of a body, if it has any.
     pub(super) fn paint(&self, place: Place) -> Option<&Paint> {
         self.paints.get(place.body).and_then(Option::as_ref)

@@ -1,5 +1,5 @@
 //! Matte bodies: opaque, and of the same radiance seen from all sides. A partly clear body's surface is so for a share of the
-//! light, and so is a body that covers a share of what is behind it.
+//! light, and so is a body that covers a share of what is behind it. Of a metal in part the rest is matte.
 
 use super::face::{Face, faces};
 use super::hit::{Hit, Place};
@@ -23,7 +23,7 @@ pub(super) struct Mattes {
 }
 
 struct Matte {
-    /// Whether no light enters or passes, anywhere.
+    /// Whether no light enters or passes, and nothing is a metal, anywhere.
     is_whole: bool,
     is_opaque: bool,
     /// Factor from irradiance to radiance: the base colour / π; of a partly clear body, whose light has taken its colour as it
@@ -59,10 +59,21 @@ impl Mattes {
         Some(color * self.sent_by(matte, hit.place, hit.normal, point, paint))
     }
 
+    /// Returns the normal at a point of a matte body's or a metal's face; `flat` is the face's own.
+    pub(super) fn normal(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+        let matte = self.bodies.get(place.body).and_then(Option::as_ref);
+        matte.and_then(|matte| matte.faces.get(place.face)).map_or(flat, |face| face.normal(point, flat))
+    }
+
+    /// Returns the irradiance of each light at a point, perpendicular to its direction.
+    pub(super) fn arrivals(&self, point: DVec3) -> impl Iterator<Item = light::Arrival> {
+        self.lights.iter().map(move |light| light.arrival(point))
+    }
+
     /// Returns the radiance that the matte share of a body's surface adds.
     pub(super) fn sent_in_part(
         &self,
-        (place, Painted { color, clear }): (Place, Painted),
+        (place, Painted { color, clear, metallic, .. }): (Place, Painted),
         flat: DVec3,
         point: DVec3,
         paint: Option<&Paint>,
@@ -71,7 +82,7 @@ impl Mattes {
         matte.map_or(DVec3::ZERO, |matte| {
             // Of a clear body the light has taken its colour already.
             let color = if matte.is_opaque { color } else { DVec3::ONE };
-            (1.0 - clear) * color * self.sent_by(matte, place, flat, point, paint)
+            (1.0 - clear) * (1.0 - metallic) * color * self.sent_by(matte, place, flat, point, paint)
         })
     }
 
@@ -96,6 +107,6 @@ impl Matte {
         let is_flat = material.is_clear() && !material.is_smooth(&object.mesh);
         let faces = if is_flat { Vec::new() } else { faces(&object.mesh) };
         let is_opaque = material.is_opaque();
-        Self { is_whole: is_opaque && material.covers_all(), is_opaque, reflectance: color / PI, faces }
+        Self { is_whole: is_opaque && material.covers_all() && !material.is_metal(), is_opaque, reflectance: color / PI, faces }
     }
 }

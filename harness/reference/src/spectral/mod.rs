@@ -15,7 +15,8 @@
 //! absorbed by the attenuation colour inside, channel by channel, as in glTF and the gem recipes. Images of base colour, normals
 //! and transmission, and colours of vertices, hold at the point where light crosses the surface.
 //!
-//! An opaque body is matte: it sends the same radiance in all directions, base colour / π times the
+//! An opaque body is matte, or a metal: light that meets a metal goes from facet to facet of its rough surface and on from there,
+//! at random, to other bodies or the environment; lights count at each facet. A matte one sends the same radiance in all directions, base colour / π times the
 //! irradiance, and ends every ray that meets it. The irradiance is that of the recipe
 //! `cdrf_shading` without shadows: the environment by its spherical harmonics, and each light, at
 //! the shared normals, interpolated between a triangle's corners. So stones show opaque bodies, but
@@ -343,7 +344,7 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0)
+                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0 || surface.is_metal && !surface.is_mirror)
                     || settings.scatterers.iter().any(Option::is_some),
                 scatterers: settings.scatterers,
                 surfaces,
@@ -422,6 +423,9 @@ fn surface(object: &Object) -> Surface {
         alpha: f64::from(material.facet_slope()),
         painted: Painted::of(material),
         is_partly_clear: is_partly_clear(object),
+        is_metal: material.is_metal(),
+        is_mirror: material.roughness == 0.0,
+        f0: if material.is_metal() { material.base_color.as_dvec3() } else { DVec3::ZERO },
     }
 }
 

@@ -24,13 +24,19 @@ pub(super) struct Painted {
     /// Share of the light that comes from outside, and is not reflected, that enters; of an opaque body, the share that it does
     /// not cover.
     pub(super) clear: f64,
+    /// Share of an opaque body's surface that is a metal's.
+    pub(super) metallic: f64,
+    /// Width of the slopes of a metal's facets.
+    pub(super) metal_alpha: f64,
 }
 
 impl Painted {
     /// What a body without images has everywhere.
     pub(super) fn of(material: &Material) -> Self {
         let clear = if material.is_opaque() { 1.0 - material.covered_share() } else { material.clear_share() };
-        Self { color: DVec3::ONE, clear: f64::from(clear) }
+        let metallic = if material.is_metal() { f64::from(material.metallic) } else { 0.0 };
+        let metal_alpha = f64::from(material.roughness * material.roughness);
+        Self { color: DVec3::ONE, clear: f64::from(clear), metallic, metal_alpha }
     }
 }
 
@@ -76,6 +82,10 @@ impl Paint {
                 let here = lapidary_scene::Coverage { share: coverage.share * texel.w, ..coverage };
                 painted.clear = f64::from(1.0 - here.without_image());
             }
+        }
+        if let Some(texel) = self.texel(TextureSlot::MetallicRoughness, face, weights) {
+            painted.metal_alpha *= f64::from(texel.y * texel.y);
+            painted.metallic *= f64::from(texel.z);
         }
         if let Some(texel) = self.texel(TextureSlot::Transmission, face, weights).filter(|_| self.material.is_clear()) {
             painted.clear *= f64::from(texel.x);

@@ -47,6 +47,52 @@ pub(super) fn scatter(
     (direction, side < 0.0)
 }
 
+/// Returns where light goes from a rough metal, and what is left of it; `f0` is the share that a facet reflects head on.
+/// `met` hears of each facet: from where light comes to it, the share of the surface below it, and what is left of the light.
+pub(super) fn reflect(
+    random: &mut Xoshiro256PlusPlus,
+    direction: DVec3,
+    (normal, alpha, f0): (DVec3, f64, DVec3),
+    mut met: impl FnMut(DVec3, f64, DVec3),
+) -> (DVec3, DVec3) {
+    let (mut direction, mut below, mut left) = (direction, 1.0, DVec3::ONE);
+    for _ in 0..MOST_FACETS {
+        let Some(next) = step(random.random(), below, masking(normal.dot(direction), alpha)) else { break };
+        below = next;
+        met(direction, below, left);
+        let facet = facet(random, direction, normal, alpha);
+        let facing = -facet.dot(direction);
+        left *= schlick(f0, facing);
+        direction = (direction + 2.0 * facing * facet).normalize();
+    }
+    (direction, left)
+}
+
+/// Returns what a facet of a rough metal at random, which `direction` comes to above a share `below` of the surface, sends
+/// out towards a light, per steradian.
+pub(super) fn toward(
+    light: DVec3,
+    direction: DVec3,
+    (normal, alpha, f0): (DVec3, f64, DVec3),
+    below: f64,
+) -> DVec3 {
+    let (cosine_light, cosine) = (normal.dot(light), -normal.dot(direction));
+    let half = (light - direction).normalize_or_zero();
+    if cosine_light <= 0.0 || normal.dot(half) <= 0.0 {
+        return DVec3::ZERO;
+    }
+    // The area of all facets, as seen along the direction.
+    let area = 0.5 * (cosine + (alpha * alpha * (1.0 - cosine * cosine) + cosine * cosine).sqrt());
+    let density = microfacet::distribution(normal, half, alpha);
+    let leaves = below.powf(masking(cosine_light, alpha));
+    schlick(f0, -half.dot(direction)) * density / (4.0 * area) * leaves
+}
+
+/// Returns Schlick's share of light that a metal reflects.
+pub(super) fn schlick(f0: DVec3, cosine: f64) -> DVec3 {
+    f0 + (DVec3::ONE - f0) * (1.0 - cosine.clamp(0.0, 1.0)).powi(5)
+}
+
 /// Returns the normal of a facet that light meets, at random by how much of it light sees.
 pub(super) fn facet(random: &mut Xoshiro256PlusPlus, direction: DVec3, normal: DVec3, alpha: f64) -> DVec3 {
     let azimuth = DVec2::from_angle(TAU * random.random::<f64>());

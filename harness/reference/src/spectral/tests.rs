@@ -483,3 +483,33 @@ fn a_matte_body_sends_what_falls_on_it() {
         }
     }
 }
+
+/// A white metal in radiance 1 is not seen, however rough, and one of a constant half is darker by what its facets take.
+#[test]
+fn white_furnace_with_a_metal() {
+    let environment = ones();
+    let mut scene = Scene { lights: Vec::new(), ..Scene::named("jade").unwrap() };
+    for roughness in [0.0, 0.4, 1.0] {
+        for object in &mut scene.objects {
+            object.material = Material { metallic: 1.0, roughness, ..Material::standard() };
+        }
+        let settings = Settings { environment: &environment, samples: 1, ..Settings::of_size(16, 16) };
+        let rendering = rendered(&scene, &settings);
+        let most = rendering.linear.iter().map(|pixel| (pixel[0] - pixel[3]).abs()).fold(0.0, f32::max);
+        assert!(most < 2e-4, "roughness {roughness}: {most}");
+    }
+    // Half of a metal is matte.
+    for object in &mut scene.objects {
+        object.material = Material { metallic: 0.5, base_color: Vec3::splat(0.5), ..Material::standard() };
+    }
+    let settings = Settings { environment: &environment, samples: 4, ..Settings::of_size(8, 8) };
+    let covered = |rendering: &Rendering| -> (f32, f32) {
+        rendering.linear.iter().fold((0.0, 0.0), |sum, pixel| (sum.0 + pixel[0], sum.1 + pixel[3]))
+    };
+    let (sum, share) = covered(&rendered(&scene, &settings));
+    for object in &mut scene.objects {
+        object.material.metallic = 1.0;
+    }
+    let (metal, _) = covered(&rendered(&scene, &settings));
+    assert!((sum - 0.5 * (metal + 0.5 * share)).abs() < 0.01 * sum, "{sum} {metal} {share}");
+}

@@ -50,6 +50,12 @@ pub(super) struct Surface {
     pub(super) painted: Painted,
     /// Whether a share of the light does not enter, somewhere.
     pub(super) is_partly_clear: bool,
+    /// Whether a share of it is a metal's, somewhere.
+    pub(super) is_metal: bool,
+    /// Whether it is polished everywhere.
+    pub(super) is_mirror: bool,
+    /// Share of light that its metal reflects head on, without images.
+    pub(super) f0: DVec3,
 }
 
 impl Surface {
@@ -147,9 +153,15 @@ pub(super) struct Ray {
     within: Within,
     /// Factor from the ray's radiance to its contribution to the camera ray.
     throughput: DVec3,
+    /// Whether it shows the discs of lights: not if they were counted where it left.
+    sees_lights: bool,
 }
 
 impl Ray {
+    fn of_eye(origin: DVec3, direction: DVec3, within: Within) -> Self {
+        Self { origin, direction, left: None, within, throughput: DVec3::ONE, sees_lights: true }
+    }
+
     fn energy(&self) -> f64 {
         self.throughput.max_element()
     }
@@ -181,15 +193,15 @@ impl<'scene> Surroundings<'scene> {
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         if !self.around_eye.is_empty() {
             let within = self.around_eye;
-            return Some(Primary::FromEye(Ray { origin: eye, direction, left: None, within, throughput: DVec3::ONE }));
+            return Some(Primary::FromEye(Ray::of_eye(eye, direction, within)));
         }
         let hit = self.bodies.enter(eye, direction, None)?;
         if let Some(radiance) = self.bodies.sent(&hit, eye + hit.distance * direction) {
             return Some(Primary::Matte(radiance));
         }
-        let ray = Ray { origin: eye, direction, left: None, within: Within::default(), throughput: DVec3::ONE };
+        let ray = Ray::of_eye(eye, direction, Within::default());
         let surface = self.surfaces[hit.place.body];
-        if surface.alpha > 0.0 || surface.is_partly_clear || self.scatterer(&hit).is_some() {
+        if surface.alpha > 0.0 || surface.is_partly_clear || surface.is_metal || self.scatterer(&hit).is_some() {
             return Some(Primary::FromEye(ray));
         }
         let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
@@ -222,7 +234,7 @@ impl<'scene> Surroundings<'scene> {
     /// Returns the radiance of the environment and of the lights' discs along a ray.
     fn around(&self, ray: &Ray) -> DVec3 {
         let mut radiance = self.environment.radiance(ray.direction);
-        for (light, radius) in &self.lights {
+        for (light, radius) in self.lights.iter().filter(|_| ray.sees_lights) {
             let arrival = light.arrival(ray.origin);
             let distance = if arrival.distance.is_finite() { arrival.distance } else { 1.0 };
             let sine = (radius / distance.max(f64::MIN_POSITIVE)).min(1.0);
@@ -268,6 +280,10 @@ impl<'scene> Surroundings<'scene> {
             } else {
                 arrival.split(&self.order, optics)
             };
+            if let Some(ray) = self.reflect(&arrival, &mut outcome, random) {
+                pending += ray.energy();
+                waiting.push(ray);
+            }
             // The many rays of a tree would wander between rough surfaces one by one.
             let (reflectance, transmitted) = match transmitted {
                 Some(ray) if self.is_random && hits > MOST_SPLIT && reflectance > 0.0 => {
@@ -341,6 +357,34 @@ impl<'scene> Surroundings<'scene> {
         arrival
     }
 
+    /// Returns the ray that leaves a metal, at random; `None` where no metal is. The lights are added to `outcome`.
+    fn reflect(&self, arrival: &Arrival, outcome: &mut Outcome, random: &mut Xoshiro256PlusPlus) -> Option<Ray> {
+        let Arrival { surface, point, direction, place, .. } = *arrival;
+        let Painted { color, clear, metallic, metal_alpha } = surface.painted;
+        if !surface.is_metal || metallic == 0.0 {
+            return None;
+        }
+        let mattes = self.bodies.mattes();
+        let given = mattes.normal(place, arrival.normal, point);
+        let given = self.bodies.paint(place).map_or(given, |paint| paint.bent(place, point, given));
+        let normal = if given.dot(direction) < 0.0 { given } else { arrival.normal };
+        let (f0, throughput) = (color * surface.f0, (1.0 - clear) * metallic * arrival.throughput);
+        if metal_alpha == 0.0 {
+            let left = throughput * rough::schlick(f0, -normal.dot(direction));
+            return Some(arrival.leave(arrival.on_side(reflect(direction, normal), false), arrival.before, left));
+        }
+        let metal = (normal, metal_alpha, f0);
+        let lights = &mut outcome.radiance;
+        let (direction, left) = rough::reflect(random, direction, metal, |direction, below, left| {
+            for light in mattes.arrivals(point) {
+                let sent = rough::toward(light.direction, direction, metal, below);
+                *lights += throughput * left * sent * light.irradiance;
+            }
+        });
+        let direction = arrival.on_side(direction, false);
+        Some(Ray { sees_lights: false, ..arrival.leave(direction, arrival.before, throughput * left) })
+    }
+
     /// Takes from a ray that crosses a partly clear surface what does not enter, for which the surface is matt.
     fn part(&self, arrival: &Arrival, mut ray: Ray, outcome: &mut Outcome) -> Ray {
         let Arrival { surface, enters, point, .. } = *arrival;
@@ -392,7 +436,7 @@ impl<'scene> Surroundings<'scene> {
 
 impl Arrival {
     fn leave(&self, direction: DVec3, within: Within, throughput: DVec3) -> Ray {
-        Ray { origin: self.point, direction, left: Some(self.place), within, throughput }
+        Ray { origin: self.point, direction, left: Some(self.place), within, throughput, sees_lights: true }
     }
 
     /// Returns the direction of the reflection: by the face's normal where the interpolated one would send it through the

@@ -217,6 +217,11 @@ fn cases() -> Vec<Case> {
     thick.objects[0].material.thickness = 1.0;
     let shares = |texture: Texture| Texture { encoding: Encoding::Linear, ..texture };
     thick.objects[0].material.thickness_texture = thick.objects[0].material.base_color_texture.clone().map(shares);
+    // Half of each is a metal: the rest still sends light of the environment back.
+    let metal = Material { metallic: 0.5, roughness: 0.5, ..Material::standard() };
+    let gilded = with_material("wax", |_| metal.clone());
+    let mut engraved = with_material("head", |_| metal.clone());
+    engraved.objects[0].material.metallic_roughness_texture = thick.objects[0].material.thickness_texture.clone();
     let mut lantern = one("wax");
     let position = lantern.bounds().centre();
     lantern.lights.push(Light::Point { position, intensity: Vec3::ONE });
@@ -421,6 +426,12 @@ fn cases() -> Vec<Case> {
             [vec!["normals by image", "normal image's sampler"], vec![], vec![]],
         ),
         case(
+            Effect::RoughnessTexture,
+            engraved,
+            of_rung("accurate"),
+            [vec!["roughness image", "roughness image's sampler"], vec![], vec![]],
+        ),
+        case(
             Effect::ThicknessTexture,
             thick,
             of_rung("accurate"),
@@ -442,6 +453,12 @@ fn cases() -> Vec<Case> {
             one("jade"),
             Settings { environment: sky(), ..of_rung("accurate") },
             [vec!["environment map"], vec![], vec![]],
+        ),
+        case(
+            Effect::Metal,
+            gilded,
+            of_rung("lambert"),
+            [vec!["blurred environment", "blurred environment's sampler", "metal's reflectance"], vec![], vec![]],
         ),
         case(Effect::Spot, spotlit, of_rung("accurate"), none()),
     ]

@@ -89,6 +89,7 @@ pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
     (&["enclosed"], "diffusion", Rule::Each("lights")),
     // What runs outside of frames.
     (&["texels"], "cdrf_table", Rule::Each("texels")),
+    (&["texels", "radiance"], "split_sum_tables", Rule::Each("texels")),
     (&["exits"], "random_walk", Rule::Each("walks")),
     (&["row_sums"], "environment_harmonics", Rule::Each("rows of the image × ⌈256 / rows⌉")),
     // Textures.
@@ -98,9 +99,11 @@ pub(super) const SIZES: &[(&[&str], &str, Rule)] = &[
     (&["screen_radiance", "screen_depth"], "gem", Rule::Texture("the picture of the other bodies")),
     (&["samples"], "display", Rule::Texture("samples × width, samples × height")),
     (&["irradiance", "stretch", "diffused"], "", Rule::Texture("the atlas")),
+    (&["blurred"], "", Rule::Texture("1024 × 512, 7 levels; rgba16float, baked by `split_sum_tables`")),
+    (&["metal_table"], "", Rule::Texture("64 × 64; rg16float, baked by `split_sum_tables`")),
     (&["table", "table_texels"], "cdrf", Rule::Texture("baked by `cdrf_table`; 1 × 1 if unused")),
     (
-        &["base_color_texture", "normal_texture", "thickness_texture", "transmission_texture"],
+        &["base_color_texture", "normal_texture", "roughness_texture", "thickness_texture", "transmission_texture"],
         "cdrf",
         Rule::Texture("the material's image"),
     ),

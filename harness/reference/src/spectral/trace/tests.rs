@@ -9,8 +9,11 @@ const POLISHED: Surface = Surface {
     is_thin: false,
     is_opaque: false,
     alpha: 0.0,
-    painted: Painted { color: DVec3::ONE, clear: 1.0 },
+    painted: Painted { color: DVec3::ONE, clear: 1.0, metallic: 0.0, metal_alpha: 0.0 },
     is_partly_clear: false,
+    is_metal: false,
+    is_mirror: true,
+    f0: DVec3::ZERO,
 };
 
 /// Returns a sky of radiance 1 above and 0 below, with a soft step of one texel in between.
