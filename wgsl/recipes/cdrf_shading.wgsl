@@ -223,7 +223,7 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
 }
 
 // The derivatives at a pixel, the curvature that follows from them, the factor of the lengths by which light
-// spreads, the share of the light that enters, the width of the microfacets' slopes, and the share that is a metal's.
+// spreads, and the share of the light that enters.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
@@ -232,8 +232,6 @@ struct CdrfSurface {
     curvature: f32,
     thickness: f32,
     transmission: f32,
-    alpha: f32,
-    metallic: f32,
 }
 
 // The surface at a pixel. Call it outside all branches: derivatives need the neighbouring pixels.
@@ -259,19 +257,28 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     if (EFFECT_TRANSMISSION_TEXTURE) {
         transmission *= textureSample(transmission_texture, transmission_sampler, input.transmission_uv).a;
     }
-    var alpha = material.alpha;
-    var metallic = 0.0f;
+    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness, transmission);
+}
+
+// What the surface is at a pixel where light does not enter: the width of the microfacets' slopes, and the share that is
+// a metal's.
+struct CdrfGloss {
+    alpha: f32,
+    metallic: f32,
+}
+
+// Call it outside all branches, for the level of the image.
+fn cdrf_gloss(input: CdrfVertex) -> CdrfGloss {
+    var gloss = CdrfGloss(material.alpha, 0.0f);
     if (EFFECT_METAL) {
-        metallic = material.metallic;
+        gloss.metallic = material.metallic;
     }
     if (EFFECT_ROUGHNESS_TEXTURE) {
         let texel = textureSample(roughness_texture, roughness_sampler, input.roughness_uv);
-        alpha *= texel.g * texel.g;
-        metallic *= texel.b;
+        gloss.alpha *= texel.g * texel.g;
+        gloss.metallic *= texel.b;
     }
-    return CdrfSurface(
-        position_x, position_y, normal_x, normal_y, curvature, thickness, transmission, alpha, metallic
-    );
+    return gloss;
 }
 
 // The unit normal. If interpolation between opposite normals leaves no direction, the surface
@@ -587,20 +594,20 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
     return received;
 }
 
-// Radiance that the surface reflects from all lights towards the eye, without spreading it.
+// Radiance that the surface reflects from all lights towards the eye, without spreading it. `color` is a metal's.
 fn cdrf_highlights(
-    position: vec3f, surface: CdrfSurface, normals: CdrfNormals, base_color: vec3f, toward_eye: vec3f
+    position: vec3f, normals: CdrfNormals, toward_eye: vec3f, gloss: CdrfGloss, color: vec3f
 ) -> vec3f {
     //+metal {
     var metal = Metal(vec3f(0.0f), 0.0f, vec3f(0.0f), vec3f(0.0f));
     if (EFFECT_METAL) {
-        metal = metal_seen(base_color, surface.alpha, dot(normals.sharp, toward_eye));
+        metal = metal_seen(color, gloss.alpha, dot(normals.sharp, toward_eye));
     }
     //+metal }
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
-        var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, surface.alpha);
+        var highlight = reflection_highlight(arrival, normals.sharp, toward_eye, material.index, gloss.alpha);
         if (EFFECT_SECOND_LOBE) {
             let second = reflection_highlight(
                 arrival, normals.sharp, toward_eye, material.index, material.second_alpha
@@ -609,7 +616,7 @@ fn cdrf_highlights(
         }
         if (EFFECT_METAL) {
             let of_metal = metal_highlight(metal, arrival, normals.sharp, toward_eye);
-            highlight = mix(highlight, of_metal, surface.metallic);
+            highlight = mix(highlight, of_metal, gloss.metallic);
         }
         if (EFFECT_SHADOW) {
             highlight *= cdrf_visible(index, dot(normals.sharp, arrival.direction), position, normals.coarse);
@@ -634,6 +641,7 @@ fn cdrf_threshold(place: vec2u) -> f32 {
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let surface = cdrf_surface(input);
+    let gloss = cdrf_gloss(input);
     let toward_eye = normalize(view.eye - input.position);
     let normals = cdrf_normals(input, surface, cdrf_unit_normal(input.normal, toward_eye));
 
@@ -656,21 +664,21 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let inside = 0.31830987f * base_color * received;
     var radiance = inside;
     if (EFFECT_REFLECTION) {
-        radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, surface.alpha);
+        radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, gloss.alpha);
     }
     if (EFFECT_METAL) {
-        let metal = metal_seen(base_color, surface.alpha, dot(normals.sharp, toward_eye));
+        let metal = metal_seen(base_color, gloss.alpha, dot(normals.sharp, toward_eye));
         let mirrored = reflect(-toward_eye, normals.sharp);
-        var around = metal_surroundings(mirrored, surface.alpha);
+        var around = metal_surroundings(mirrored, gloss.alpha);
         if (EFFECT_REFLECTION) {
             // The first level is the environment at the size of the map.
             around = surroundings_radiance(mirrored);
         }
-        radiance = mix(radiance, metal.reflectance * around, surface.metallic);
+        radiance = mix(radiance, metal.reflectance * around, gloss.metallic);
     }
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
-            radiance += cdrf_highlights(input.position, surface, normals, base_color, toward_eye);
+            radiance += cdrf_highlights(input.position, normals, toward_eye, gloss, base_color);
         }
     }
     if (EFFECT_COVERAGE) {

@@ -107,6 +107,11 @@ impl Matte {
         let is_flat = material.is_clear() && !material.is_smooth(&object.mesh);
         let faces = if is_flat { Vec::new() } else { faces(&object.mesh) };
         let is_opaque = material.is_opaque();
-        Self { is_whole: is_opaque && material.covers_all() && !material.is_metal(), is_opaque, reflectance: color / PI, faces }
+        Self {
+            is_whole: is_opaque && material.covers_all() && !material.is_metal(),
+            is_opaque,
+            reflectance: color / PI,
+            faces,
+        }
     }
 }

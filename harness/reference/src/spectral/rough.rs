@@ -70,12 +70,7 @@ pub(super) fn reflect(
 
 /// Returns what a facet of a rough metal at random, which `direction` comes to above a share `below` of the surface, sends
 /// out towards a light, per steradian.
-pub(super) fn toward(
-    light: DVec3,
-    direction: DVec3,
-    (normal, alpha, f0): (DVec3, f64, DVec3),
-    below: f64,
-) -> DVec3 {
+pub(super) fn toward(light: DVec3, direction: DVec3, (normal, alpha, f0): (DVec3, f64, DVec3), below: f64) -> DVec3 {
     let (cosine_light, cosine) = (normal.dot(light), -normal.dot(direction));
     let half = (light - direction).normalize_or_zero();
     if cosine_light <= 0.0 || normal.dot(half) <= 0.0 {

@@ -95,7 +95,7 @@ pub(super) struct Outcome {
 /// A camera ray up to its first surface, which does not depend on the wavelength.
 pub(super) enum Primary {
     /// The ray meets a polished clear body.
-    Clear(Entry),
+    Clear(Box<Entry>),
     /// The ray meets a rough, partly clear or scattering body, or begins within clear ones: it is followed from the eye on.
     FromEye(Ray),
     /// The ray meets a matte body, which sends this radiance.
@@ -210,7 +210,7 @@ impl<'scene> Surroundings<'scene> {
             Ahead::Surface(..) | Ahead::Scatterer(..) => None,
             Ahead::Light(radiance, _) => Some(radiance),
         };
-        Some(Primary::Clear(Entry { arrival, reflected, reflected_radiance }))
+        Some(Primary::Clear(Box::new(Entry { arrival, reflected, reflected_radiance })))
     }
 
     /// Returns the body at a hit if it scatters.
@@ -255,7 +255,8 @@ impl<'scene> Surroundings<'scene> {
         match primary {
             Primary::Matte(radiance) => return Outcome { radiance: *radiance, lost: 0.0 },
             Primary::FromEye(ray) => waiting.push(*ray),
-            Primary::Clear(Entry { arrival, reflected, reflected_radiance }) => {
+            Primary::Clear(entry) => {
+                let Entry { arrival, reflected, reflected_radiance } = &**entry;
                 let (reflectance, transmitted) = arrival.split(&self.order, optics);
                 match reflected_radiance {
                     Some(radiance) => outcome.radiance += reflectance * *radiance,

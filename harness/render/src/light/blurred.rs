@@ -46,8 +46,12 @@ pub(crate) fn bound(builder: &mut Builder<'_>, environment: &Environment) -> Res
         Some(gpu) => [levels(gpu, environment)?, reflectance(gpu)?].map(Contents::Bytes),
         None => [Contents::LeftOut, Contents::LeftOut],
     };
-    let blurred =
-        builder.mipped("blurred environment", wgpu::TextureFormat::Rgba16Float, [SIZE[0], SIZE[1], 1], (LEVELS, levels));
+    let blurred = builder.mipped(
+        "blurred environment",
+        wgpu::TextureFormat::Rgba16Float,
+        [SIZE[0], SIZE[1], 1],
+        (LEVELS, levels),
+    );
     let address = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge];
     let sampler = builder.sampler("blurred environment's sampler", address);
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rg16Float);
@@ -131,12 +135,7 @@ fn reflectance(gpu: &Gpu) -> Result<Vec<u8>, ShaderError> {
 }
 
 /// Runs an entry point of the recipe `split_sum_tables`; returns its texels, row by row.
-fn bake(
-    gpu: &Gpu,
-    entry: &str,
-    (tables, size): (Record, UVec2),
-    radiance: &[u8],
-) -> Result<Vec<Vec4>, ShaderError> {
+fn bake(gpu: &Gpu, entry: &str, (tables, size): (Record, UVec2), radiance: &[u8]) -> Result<Vec<Vec4>, ShaderError> {
     let run = RecipeRun {
         recipe: "split_sum_tables",
         entry,

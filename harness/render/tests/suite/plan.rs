@@ -428,7 +428,7 @@ fn cases() -> Vec<Case> {
         case(
             Effect::RoughnessTexture,
             engraved,
-            of_rung("accurate"),
+            of_rung("lambert"),
             [vec!["roughness image", "roughness image's sampler"], vec![], vec![]],
         ),
         case(

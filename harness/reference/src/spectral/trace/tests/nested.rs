@@ -133,7 +133,8 @@ fn a_ball_within_a_ball_is_magnified_by_its_index() {
         let meets = |away: f64| {
             let turned = DQuat::from_rotation_z(0.7) * DVec3::X;
             let primary = surroundings.primary(eye + away * turned, -DVec3::Z).expect("met");
-            let Primary::Clear(Entry { arrival, .. }) = primary else { panic!("the outer ball is clear") };
+            let Primary::Clear(entry) = primary else { panic!("the outer ball is clear") };
+            let Entry { arrival, .. } = *entry;
             let ray = arrival.split(&surroundings.order, &[clear(index), clear(1.5)]).1.expect("refracted");
             matches!(surroundings.ahead(&ray), Some(Ahead::Light(..)))
         };
