@@ -5,7 +5,7 @@ use crate::error::RenderError;
 use crate::frame::compute::{self, Binding, RecipeRun};
 use crate::frame::record::Record;
 use crate::frame::shader::ShaderError;
-use crate::frame::{Bound, Builder, Contents, level_size};
+use crate::frame::{Builder, Contents, Sampler, Texture, level_size};
 use crate::material::textures::levels::of_linear;
 use exr::prelude::f16;
 use glam::{DVec2, DVec3, UVec2, Vec4};
@@ -15,8 +15,9 @@ use lapidary_scene::Environment;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Bindings in group 0: the environment, its sampler, and the table.
-pub(crate) const BINDINGS: [u32; 3] = [21, 22, 23];
+/// Bindings in group 0: the environment, and the sampler and the table.
+pub(crate) const ENVIRONMENT: u32 = 21;
+pub(crate) const TABLES: [u32; 2] = [22, 23];
 
 /// Columns and rows of the first level.
 const SIZE: [u32; 2] = [1024, 512];
@@ -37,27 +38,32 @@ const WORKGROUP: u32 = 8;
 /// Largest radiance that a half float holds, with room for its rounding.
 const LARGEST: f32 = 65_000.0;
 
-/// Adds both tables and the sampler to the frame.
+/// Adds the blurred environment to the frame.
 ///
 /// # Errors
 /// If the device refuses the recipe or the memory.
-pub(crate) fn bound(builder: &mut Builder<'_>, environment: &Environment) -> Result<[(u32, Bound); 3], RenderError> {
-    let [levels, table] = match builder.gpu() {
-        Some(gpu) => [levels(gpu, environment)?, reflectance(gpu)?].map(Contents::Bytes),
-        None => [Contents::LeftOut, Contents::LeftOut],
+pub(crate) fn texture(builder: &mut Builder<'_>, environment: &Environment) -> Result<Texture, RenderError> {
+    let levels = match builder.gpu() {
+        Some(gpu) => Contents::Bytes(levels(gpu, environment)?),
+        None => Contents::LeftOut,
     };
-    let blurred = builder.mipped(
-        "blurred environment",
-        wgpu::TextureFormat::Rgba16Float,
-        [SIZE[0], SIZE[1], 1],
-        (LEVELS, levels),
-    );
-    let address = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge];
-    let sampler = builder.sampler("blurred environment's sampler", address);
+    let [width, height] = SIZE;
+    Ok(builder.mipped("blurred environment", wgpu::TextureFormat::Rgba16Float, [width, height, 1], (LEVELS, levels)))
+}
+
+/// Adds the table of reflectance to the frame, and the sampler of both.
+///
+/// # Errors
+/// If the device refuses the recipe or the memory.
+pub(crate) fn table(builder: &mut Builder<'_>) -> Result<(Texture, Sampler), RenderError> {
+    let contents = match builder.gpu() {
+        Some(gpu) => Contents::Bytes(reflectance(gpu)?),
+        None => Contents::LeftOut,
+    };
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rg16Float);
-    let table = builder.texture("metal's reflectance", format, [TABLE, TABLE, 1], table);
-    let [first, second, third] = BINDINGS;
-    Ok([(first, blurred.into()), (second, sampler.into()), (third, table.into())])
+    let table = builder.texture("metal's reflectance", format, [TABLE, TABLE, 1], contents);
+    let address = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge];
+    Ok((table, builder.sampler("blurred environment's sampler", address)))
 }
 
 /// Returns the bytes of all levels.

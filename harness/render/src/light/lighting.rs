@@ -9,7 +9,7 @@ use super::hierarchy::Hierarchy;
 use super::screen::{self, Picture};
 use crate::error::RenderError;
 use crate::frame::record::Record;
-use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
+use crate::frame::{Bound, Buffer, Builder, PipelineId, Sampler, Texture};
 use crate::objects::mesh_buffers::Shapes;
 use crate::settings::Settings;
 use glam::{DVec3, Vec3, Vec4};
@@ -34,7 +34,8 @@ pub(crate) struct Lighting<'a> {
     hierarchy: OnceCell<Hierarchy>,
     beside: OnceCell<Beside>,
     glints: OnceCell<Buffer>,
-    blurred: OnceCell<[(u32, Bound); 3]>,
+    blurred: OnceCell<Texture>,
+    metal: OnceCell<(Texture, Sampler)>,
     /// What keeps light from others.
     pub(crate) shapes: Shapes,
     /// Size of the largest picture in samples.
@@ -46,7 +47,7 @@ impl<'a> Lighting<'a> {
     /// size in samples.
     pub(crate) fn new(scene: &'a Scene, settings: &'a Settings, size: [u32; 2]) -> Self {
         let (environment, lights, around, harmonics, screen, bodies, shapes) = Default::default();
-        let (hierarchy, beside, glints, blurred) = Default::default();
+        let (hierarchy, beside, glints, blurred, metal) = Default::default();
         Self {
             scene,
             settings,
@@ -60,6 +61,7 @@ impl<'a> Lighting<'a> {
             beside,
             glints,
             blurred,
+            metal,
             shapes,
             size,
         }
@@ -118,13 +120,22 @@ impl<'a> Lighting<'a> {
         Ok(*self.beside.get_or_init(|| made))
     }
 
-    /// Returns the environment blurred for metals, and the table of what they reflect.
-    fn blurred(&self, builder: &mut Builder<'_>) -> Result<[(u32, Bound); 3], RenderError> {
+    /// Returns the environment blurred for rough metals.
+    fn blurred(&self, builder: &mut Builder<'_>) -> Result<Texture, RenderError> {
         if let Some(known) = self.blurred.get() {
             return Ok(*known);
         }
-        let made = builder.of_object("", |builder| blurred::bound(builder, &self.settings.environment))?;
+        let made = builder.of_object("", |builder| blurred::texture(builder, &self.settings.environment))?;
         Ok(*self.blurred.get_or_init(|| made))
+    }
+
+    /// Returns the table of what metals reflect, and its sampler.
+    fn metal(&self, builder: &mut Builder<'_>) -> Result<(Texture, Sampler), RenderError> {
+        if let Some(known) = self.metal.get() {
+            return Ok(*known);
+        }
+        let made = builder.of_object("", blurred::table)?;
+        Ok(*self.metal.get_or_init(|| made))
     }
 
     /// Returns the number of an object that is borrowed from the scene.
@@ -213,8 +224,13 @@ impl<'a> Lighting<'a> {
             let Beside { nodes, corners } = self.beside(builder)?;
             shared.extend(beside::BINDINGS.into_iter().zip([nodes.into(), corners.into()]));
         }
-        if builder.binds(pipeline, 0, blurred::BINDINGS[0]) {
-            shared.extend(self.blurred(builder)?);
+        if builder.binds(pipeline, 0, blurred::ENVIRONMENT) {
+            shared.push((blurred::ENVIRONMENT, self.blurred(builder)?.into()));
+        }
+        let [sampler, table] = blurred::TABLES;
+        if builder.binds(pipeline, 0, table) {
+            let (reflectance, smooth) = self.metal(builder)?;
+            shared.extend([(sampler, smooth.into()), (table, reflectance.into())]);
         }
         if Hierarchy::is_read(builder, pipeline) {
             shared.extend(self.hierarchy(builder)?.shared(builder, pipeline)?);

@@ -9,6 +9,7 @@ mod environment_harmonics;
 mod frame;
 mod furnace;
 mod instances;
+mod metal;
 mod optical_path;
 mod optical_path_shading;
 mod parity;

@@ -429,7 +429,7 @@ fn cases() -> Vec<Case> {
             Effect::RoughnessTexture,
             engraved,
             of_rung("lambert"),
-            [vec!["roughness image", "roughness image's sampler"], vec![], vec![]],
+            [vec!["roughness image", "roughness image's sampler", "uvs"], vec![], vec![]],
         ),
         case(
             Effect::ThicknessTexture,
