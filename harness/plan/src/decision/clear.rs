@@ -131,11 +131,20 @@ impl Case<'_> {
         }
     }
 
-    pub(super) fn light(&self) -> Answer {
+    /// Whether a rung is asked for, which shows lights on request alone.
+    fn hides_lights(&self) -> bool {
         let is_named = self.request.rung_of(self.object) != Rung::ByMaterial && !self.is_among();
+        is_named && !self.request.lights
+    }
+
+    fn sees_lights(&self) -> bool {
+        !self.scene.lights.is_empty() && !self.hides_lights() && !self.request.without.has(Effect::Light)
+    }
+
+    pub(super) fn light(&self) -> Answer {
         match self.scene.lights.len() {
             0 => off("no lights"),
-            _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
+            _ if self.hides_lights() => off("a rung is asked for: --with light"),
             // Copies, wavelengths and bounds leave no room for two more buffers.
             _ if matches!(self.rung.spectrum(), Spectrum::Separate(_))
                 && self.instances().0
@@ -164,7 +173,11 @@ impl Case<'_> {
         match self.request.outside {
             _ if !walks => off(format!("the rung {} follows light through one body", self.rung)),
             Some(Outside::Triangles) | None
-                if matches!(self.rung.spectrum(), Spectrum::Separate(_)) || self.instances().0 =>
+                if !among::fits_around(
+                    self.instances().0,
+                    matches!(self.rung.spectrum(), Spectrum::Separate(_)),
+                    self.sees_lights(),
+                ) =>
             {
                 off("the stage reads as many buffers as devices offer")
             }
