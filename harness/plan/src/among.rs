@@ -110,6 +110,11 @@ pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene) -> Option<&
     sharing(object, scene).find(|other| !setting::holds(other, object))
 }
 
+/// Returns the first such body that is not clear.
+pub(crate) fn reached_by_opaque<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    sharing(object, scene).find(|other| !other.material.is_clear())
+}
+
 fn sharing<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {
     let own = bounds(object);
     let met = others(object, scene).filter(move |(_, bounds)| meet(*bounds, own)).map(|(other, _)| other);

@@ -85,6 +85,9 @@ impl Case<'_> {
     }
 
     pub(super) fn nested(&self) -> Answer {
+        if let Some(other) = self.met_inside() {
+            return on(format!("{} reaches into it", other.name));
+        }
         // By another rung, what only holds the stone is met where light leaves it.
         let shares = if self.is_among() {
             among::shares_space(self.object, self.scene)
@@ -167,6 +170,12 @@ impl Case<'_> {
         }
     }
 
+    /// Returns the first body that is not clear, and that rays inside a convex stone meet.
+    fn met_inside(&self) -> Option<&Object> {
+        let meets = !self.is_among() && !self.request.without.has(Effect::Around) && self.around().0;
+        if meets { among::reached_by_opaque(self.object, self.scene) } else { None }
+    }
+
     /// The same under a rung that follows light through one body: what leaves that meets triangles.
     fn around_one(&self) -> Answer {
         let walks = self.rung.geometry_of_inside() == Some(Geometry::Walk);
@@ -184,7 +193,9 @@ impl Case<'_> {
             Some(Outside::Triangles) => self.meets("asked for, ", usize::MAX),
             Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),
-            None => among::beside(self.object, self.scene, self.request.size)
+            None => among::reached_by_opaque(self.object, self.scene)
+                .map(|other| format!("{} reaches into it", other.name))
+                .or_else(|| among::beside(self.object, self.scene, self.request.size))
                 .map_or_else(|| off("no body stands around it, or is seen straight through it"), on),
         }
     }

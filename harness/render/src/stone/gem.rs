@@ -9,7 +9,7 @@ use crate::objects::draws::Variant;
 use crate::objects::part::Part;
 use crate::picture::formats::DEPTH_FORMAT;
 use crate::settings::Settings;
-use lapidary_plan::{Decisions, Effect, Geometry, Rung, Spectrum};
+use lapidary_plan::{Decisions, Geometry, Rung, Spectrum};
 use lapidary_scene::Scene;
 
 /// Returns the overrides of the gem recipes for an object.
@@ -24,8 +24,7 @@ fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'s
     };
     let mut constants = decisions.constants();
     constants.extend([
-        // What leaves a stone inside the metal that holds it meets the metal from inside.
-        ("TRAVERSAL_TWO_SIDED", flag(rung.geometry() == Geometry::Scene || decisions.has(Effect::Around))),
+        ("TRAVERSAL_TWO_SIDED", flag(rung.geometry() == Geometry::Scene)),
         ("TRAVERSAL_LOOP", flag(rung.geometry() == Geometry::Triangles)),
         ("DISPERSION_FORM", f64::from(form)),
         ("WAVELENGTHS", f64::from(wavelengths)),
