@@ -132,6 +132,8 @@ pub enum Note {
         there: String,
         /// The rung that draws the clear one.
         rung: Rung,
+        /// Whether that rung shows both.
+        shown: bool,
     },
     /// Clear bodies drawn as polished, or as wholly clear.
     PolishedAndClear {
@@ -400,7 +402,7 @@ impl fmt::Display for Note {
                 "{count} bodies: too many to look which of them share space or stand before one another, so each clear one is drawn as if \
                  it were alone; rung `scene-16` follows light through all"
             ),
-            Self::ShareSpace { objects, with, there, rung } if rung.is_among() || *rung == Rung::Reference => write!(
+            Self::ShareSpace { objects, with, there, shown: true, .. } => write!(
                 f,
                 "{objects}: shares space with the clear `{with}`; `{there}` is there, unless extras.lapidary.priority says otherwise"
             ),
@@ -524,11 +526,18 @@ mod tests {
                     with: "glass".to_owned(),
                     there: "glass".to_owned(),
                     rung: Rung::Reference,
+                    shown: true,
                 },
                 "shares space with the clear `glass`; `glass` is there",
             ),
             line_of(
-                Note::ShareSpace { objects: objects(1), with: "glass".to_owned(), there: "glass".to_owned(), rung },
+                Note::ShareSpace {
+                    objects: objects(1),
+                    with: "glass".to_owned(),
+                    there: "glass".to_owned(),
+                    rung,
+                    shown: false,
+                },
                 "follows light as if it were alone",
             ),
             line_of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),

@@ -11,7 +11,7 @@ use std::hash::{Hash as _, Hasher as _};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Share of a stone's light, from other clear bodies, up to which it may be drawn without them.
-pub(crate) const MOST: f32 = 0.1;
+pub(crate) const MOST: f32 = 0.05;
 /// Rays along each side of the picture of a stone, and of each of several copies: enough for a share within a few hundredths.
 const RAYS: u32 = 12;
 const RAYS_OF_COPY: u32 = 6;
@@ -79,14 +79,14 @@ fn fingerprint(scene: &Scene, size: [u32; 2]) -> u64 {
     let Camera { eye, target, up, vertical_fov } = scene.camera;
     size.hash(&mut hasher);
     let mut add = |vector: Vec3| vector.to_array().map(f32::to_bits).hash(&mut hasher);
-    [eye, target, up, Vec3::splat(vertical_fov)].map(&mut add);
+    [eye, target, up, Vec3::splat(vertical_fov)].into_iter().for_each(&mut add);
     for object in &scene.objects {
         let box_ = bounds(object);
         let sum: DVec3 = object.mesh.positions.iter().map(|position| position.as_dvec3()).sum();
         let material = &object.material;
         let kind = f32::from(u8::from(material.is_clear())) + 2.0 * f32::from(u8::from(material.is_thin_wall()));
         let counts = Vec3::new(object.mesh.triangle_count() as f32, kind, material.ior);
-        [box_.min, box_.max, sum.as_vec3(), counts].map(&mut add);
+        [box_.min, box_.max, sum.as_vec3(), counts].into_iter().for_each(&mut add);
     }
     hasher.finish()
 }
