@@ -1,7 +1,7 @@
 //! Warnings about a picture that the picture itself does not show.
 
 use super::Rung;
-use super::numbers::{short, triple};
+use super::numbers::{percent, short, triple};
 use glam::Vec3;
 use lapidary_scene::jewellery::Guess;
 use lapidary_scene::stones::StoneNote;
@@ -165,6 +165,15 @@ pub enum Note {
         /// The rung that draws them.
         rung: Rung,
     },
+    /// Clear stones drawn without other clear bodies that overlap them in the view.
+    OthersNotSeen {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+        /// Largest share of an object's light that comes from the others.
+        share: f32,
+    },
     /// Scattering bodies that clear ones show by a simpler way than their own.
     SimplerThroughOthers {
         /// The objects concerned.
@@ -262,6 +271,7 @@ impl Note {
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
             | Self::CopiesApart { .. }
+            | Self::OthersNotSeen { .. }
             | Self::SimplerThroughOthers { .. }
             | Self::OtherColor { .. }
             | Self::NotCompared { .. }
@@ -392,6 +402,12 @@ impl fmt::Display for Note {
                 "{objects}: rung `{rung}` follows light through one copy, and what leaves it meets no other; rung `scene-16+3` follows it through \
                  all"
             ),
+            Self::OthersNotSeen { objects, rung, share } => write!(
+                f,
+                "{objects}: other clear bodies overlap it in the view, of which rung `{rung}` shows nothing: at most {} of its light comes from \
+                 them; rung `scene-16+3` shows them",
+                percent(*share)
+            ),
             Self::SimplerThroughOthers { objects } => write!(
                 f,
                 "{objects}: through clear bodies it looks as rung `drift` draws it: no light comes through it there, all light enters it, and \
@@ -513,6 +529,10 @@ mod tests {
             ),
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
             line_of(Note::CopiesApart { objects: objects(1), rung }, "what leaves it meets no other"),
+            line_of(
+                Note::OthersNotSeen { objects: objects(2), rung, share: 0.031 },
+                "of which rung `convex-8` shows nothing: at most 3 % of its light",
+            ),
             line_of(
                 Note::SimplerThroughOthers { objects: objects(1) },
                 "through clear bodies it looks as rung `drift` draws it",

@@ -16,7 +16,7 @@ pub(super) fn short(value: f32) -> String {
 }
 
 /// Formats a share in percent.
-pub(super) fn percent(share: f32) -> String {
+pub(crate) fn percent(share: f32) -> String {
     format!("{} %", (100.0 * share).round())
 }
 

@@ -205,3 +205,6 @@ impl Stone {
         face.filter(|_| entry < exit).map(|face| (entry, face))
     }
 }
+
+#[cfg(test)]
+mod tests;

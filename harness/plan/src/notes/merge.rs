@@ -31,6 +31,12 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
         {
             Some(objects)
         }
+        (Note::OthersNotSeen { objects, rung, share }, Note::OthersNotSeen { rung: other, share: another, .. })
+            if rung == other =>
+        {
+            *share = share.max(*another);
+            Some(objects)
+        }
         (Note::TooDeep { objects, within, rung }, Note::TooDeep { rung: other, within: others, .. })
             if rung == other =>
         {
