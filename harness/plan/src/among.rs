@@ -110,9 +110,12 @@ pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene) -> Option<&
     sharing(object, scene).find(|other| !setting::holds(other, object))
 }
 
-/// Returns the first such body that is not clear.
+/// Returns the first body that is not clear and lies within a convex stone in part.
 pub(crate) fn reached_by_opaque<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
-    sharing(object, scene).find(|other| !other.material.is_clear())
+    let own = bounds(object);
+    others(object, scene)
+        .find(|(other, bounds)| meet(*bounds, own) && setting::enters(other, object))
+        .map(|(other, _)| other)
 }
 
 fn sharing<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {

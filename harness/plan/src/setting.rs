@@ -9,6 +9,8 @@ use lapidary_scene::{Bounds, Mesh, Object, Place};
 
 /// Depth, as a share of a stone's radius, up to which the prongs and the seat of a setting are modelled into it.
 const DEEPEST: f64 = 0.25;
+/// The same up to which a body only touches a stone: a hundredth of what a picture of 512 pixels shows.
+const TOUCHES: f64 = 2e-5;
 
 /// Whether `other` is opaque or a cut stone, and reaches into a convex stone, or any of its copies, no deeper than a setting does:
 /// light inside that would meet it there meets it where it leaves the stone.
@@ -17,11 +19,17 @@ pub(crate) fn holds(other: &Object, stone: &Object) -> bool {
     let material = &other.material;
     let is_cut = material.has_clear_inside() && among::is_convex(other) && !among::is_smooth(other);
     let may = is_cut || !material.is_clear() && !material.scatters();
-    may && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other))
+    may && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other, DEEPEST))
 }
 
-/// Whether no triangle of `other` meets the inside of a stone or of its copies, deeper than a setting.
-fn stays_out(stone: &Object, other: &Mesh) -> bool {
+/// Whether `other` is not clear, and a part of it lies within a convex stone or one of its copies.
+pub(crate) fn enters(other: &Object, stone: &Object) -> bool {
+    static FOUND: Remembered<bool> = Remembered::new();
+    !other.material.is_clear() && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| !stays_out(stone, other, TOUCHES))
+}
+
+/// Whether no triangle of `other` meets the inside of a stone or of its copies, deeper than a share of their radius.
+fn stays_out(stone: &Object, other: &Mesh, deepest: f64) -> bool {
     let Some(planes) = planes_of_convex(stone.shape()) else { return false };
     let Bounds { min, max } = Bounds::of(stone.shape().positions.iter().copied());
     let places = stone.copies.as_ref().map_or(&[Place::IDENTITY][..], |copies| &copies.places);
@@ -33,7 +41,7 @@ fn stays_out(stone: &Object, other: &Mesh) -> bool {
         let inner = |plane: &Plane| {
             let normal = to_world.transform_vector3(plane.normal) / scale;
             let distance = scale * plane.distance + normal.dot(to_world.w_axis.truncate());
-            Plane { normal, distance: distance - DEEPEST * radius }
+            Plane { normal, distance: distance - deepest * radius }
         };
         let inner: Vec<Plane> = planes.iter().map(inner).collect();
         let (least, most) = (middle - radius, middle + radius);
