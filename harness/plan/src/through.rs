@@ -10,7 +10,8 @@ use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash as _, Hasher as _};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Share of a stone's light, from other clear bodies, up to which it may be drawn without them.
+/// Share of a stone's light, from other clear bodies, up to which it may be drawn without them: a hundredth costs a FLIP of about
+/// .01 (docs/gem_scene.md), and .05 is what the quicker rung may cost.
 pub(crate) const MOST: f32 = 0.05;
 /// Rays along each side of the picture of a stone, and of each of several copies: enough for a share within a few hundredths.
 const RAYS: u32 = 12;
