@@ -62,7 +62,7 @@ fn gem_enter(input: GemVertex) -> GemPlace {
 }
 
 fn gem_hit(place: ptr<function, GemPlace>, ray: GemRay) -> GemHit {
-    let nearest = trace_nearest(ray.position, ray.direction, (*place).triangle);
+    let nearest = trace_nearest(ray.position, ray.direction, (*place).triangle, TRACE_FAR);
     if (nearest.triangle == BVH_TRACE_NONE) {
         return GemHit(ray.position, -ray.direction, 0.0f, false);
     }

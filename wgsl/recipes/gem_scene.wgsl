@@ -727,7 +727,7 @@ fn scene_radiance(input: GemVertex, wavelength: u32) -> vec3f {
             }
             if (searches) {
                 trace_also_left = ray.left.y;
-                hit = trace_nearest(ray.position, ray.direction, ray.left.x);
+                hit = trace_nearest(ray.position, ray.direction, ray.left.x, TRACE_FAR);
             }
         }
         if (hit.triangle == BVH_TRACE_NONE) {

@@ -26,6 +26,6 @@ struct TraceQuery {
 fn trace_rays(@builtin(global_invocation_id) invocation: vec3u) {
     if (invocation.x < arrayLength(&queries)) {
         let query = queries[invocation.x];
-        hits[invocation.x] = trace_nearest(query.origin, query.direction, query.left);
+        hits[invocation.x] = trace_nearest(query.origin, query.direction, query.left, TRACE_FAR);
     }
 }

@@ -6,7 +6,7 @@ use crate::remembered::Remembered;
 use crate::setting;
 use glam::{Mat4, Vec2, Vec3};
 use lapidary_scene::normals::{self, Normals};
-use lapidary_scene::{Bounds, Mesh, Object, Scene, TextureSlot, clip_from_world};
+use lapidary_scene::{Bounds, Mesh, Object, Scene, Shape, TextureSlot, clip_from_world};
 use std::collections::BTreeMap;
 
 /// Number of vertices of a body of which it is asked whether they lie in the other.
@@ -66,6 +66,12 @@ pub fn is_smooth(object: &Object) -> bool {
         }
 }
 
+/// Whether a body, or what its copies share, is closed and convex.
+pub(crate) fn is_convex(object: &Object) -> bool {
+    static FOUND: Remembered<bool> = Remembered::new();
+    FOUND.of(object.shape(), |mesh| Shape::of(mesh) == Shape::Convex)
+}
+
 /// Returns why a clear body is not smooth.
 pub(crate) fn why_flat(object: &Object) -> &'static str {
     static BENT: Remembered<bool> = Remembered::new();
@@ -102,6 +108,14 @@ pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&
 /// Returns the first such body that does more than hold a cut stone.
 pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
     sharing(object, scene).find(|other| !setting::holds(other, object))
+}
+
+/// Returns the first body that is not clear and lies within a convex stone in part.
+pub(crate) fn reached_by_opaque<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
+    let own = bounds(object);
+    others(object, scene)
+        .find(|(other, bounds)| meet(*bounds, own) && setting::enters(other, object))
+        .map(|(other, _)| other)
 }
 
 fn sharing<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {
@@ -199,6 +213,15 @@ pub(crate) fn beside(object: &Object, scene: &Scene, size: [u32; 2]) -> Option<S
     stands_in(object, scene).map(|around| format!("it stands within the bounds of {}", around.name))
 }
 
+/// Storage buffers of one stage that every device offers.
+const MOST_BUFFERS: u32 = 8;
+
+/// Whether the stage of a convex stone can read the two buffers of the effect `around`, beside its material, planes, map and place,
+/// and one of copies, one of single wavelengths and two of lights.
+pub(crate) fn fits_around(copies: bool, wavelengths: bool, lights: bool) -> bool {
+    6 + u32::from(copies) + u32::from(wavelengths) + 2 * u32::from(lights) <= MOST_BUFFERS
+}
+
 /// Whether a body that is not clear covers only a share of what is behind it.
 pub(crate) fn is_sheer(object: &Object) -> bool {
     !object.material.is_clear() && !object.material.covers_all()
@@ -231,7 +254,7 @@ fn stands_in<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
 }
 
 /// Returns the smallest rectangle of the picture around a box, from -1 to 1; `None` if nothing of it is in the picture.
-fn seen(bounds: Bounds, matrix: Mat4) -> Option<(Vec2, Vec2)> {
+pub(crate) fn seen(bounds: Bounds, matrix: Mat4) -> Option<(Vec2, Vec2)> {
     let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for corner in 0..8 {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };

@@ -2,9 +2,10 @@
 
 use super::among;
 use super::effect::Effect;
-use super::numbers::short;
+use super::numbers::{percent, short};
 use super::quality::Technique;
 use super::thickness::Thickness;
+use super::through;
 use crate::request::Scattering;
 use crate::{Quality, Request, Rung};
 use lapidary_scene::{Object, Scene, Shape};
@@ -91,8 +92,14 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if request.outside.is_some() {
         return None;
     }
+    let walks = inside && walks(object, request);
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
-        return Some(format!("in the view it overlaps {}, which is clear", other.name));
+        let share = walks.then(|| through::share_of_others(object, scene, request.size));
+        if share.is_none_or(|share| share > through::MOST) {
+            let share = share
+                .map_or_else(String::new, |share| format!(", and {} of its light comes from such", percent(share)));
+            return Some(format!("in the view it overlaps {}, which is clear{share}", other.name));
+        }
     }
     // A search of all copies for each hit takes many times as long as planes of one.
     let is_best = request.quality == Quality::Best && scene.triangle_count() <= MOST_JOINED;
@@ -104,9 +111,17 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     }
     let reason = among::beside(object, scene, request.size)?;
     // What leaves a convex body is looked for by the effect `around` alone, to which others cover all that is behind them.
-    let is_sheer = || scene.objects.iter().any(among::is_sheer);
-    let walks = inside && object.copies.is_none() && !is_sheer() && Shape::of(object.shape()) == Shape::Convex;
-    (!walks).then_some(reason)
+    let meets = || {
+        let lights = !scene.lights.is_empty() && has(Effect::Light);
+        among::fits_around(object.copies.is_some(), false, lights) && !scene.objects.iter().any(among::is_sheer)
+    };
+    (!(walks && meets())).then_some(reason)
+}
+
+/// Whether a clear body with an inside may be drawn by the planes of its facets where time counts.
+fn walks(object: &Object, request: &Request<'_>) -> bool {
+    let joined = object.copies.is_some() && request.without.has(Effect::Instances);
+    request.quality != Quality::Best && !joined && among::is_convex(object)
 }
 
 /// Returns the technique for a clear body with an inside, and the reason. The proxy is never

@@ -34,6 +34,7 @@ mod request;
 mod rung;
 mod setting;
 pub mod thickness;
+mod through;
 
 pub use among::{IMAGES_MET, is_smooth};
 pub use decision::{Decision, Decisions};

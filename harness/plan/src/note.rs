@@ -1,7 +1,7 @@
 //! Warnings about a picture that the picture itself does not show.
 
 use super::Rung;
-use super::numbers::{short, triple};
+use super::numbers::{percent, short, triple};
 use glam::Vec3;
 use lapidary_scene::jewellery::Guess;
 use lapidary_scene::stones::StoneNote;
@@ -132,6 +132,8 @@ pub enum Note {
         there: String,
         /// The rung that draws the clear one.
         rung: Rung,
+        /// Whether that rung shows both.
+        shown: bool,
     },
     /// Clear bodies drawn as polished, or as wholly clear.
     PolishedAndClear {
@@ -162,6 +164,15 @@ pub enum Note {
         objects: Objects,
         /// The rung that draws them.
         rung: Rung,
+    },
+    /// Clear stones drawn without other clear bodies that overlap them in the view.
+    OthersNotSeen {
+        /// The objects concerned.
+        objects: Objects,
+        /// The rung that draws them.
+        rung: Rung,
+        /// Largest share of an object's light that comes from the others.
+        share: f32,
     },
     /// Scattering bodies that clear ones show by a simpler way than their own.
     SimplerThroughOthers {
@@ -260,6 +271,7 @@ impl Note {
             | Self::PolishedAndClear { .. }
             | Self::LightsNotSeen { .. }
             | Self::CopiesApart { .. }
+            | Self::OthersNotSeen { .. }
             | Self::SimplerThroughOthers { .. }
             | Self::OtherColor { .. }
             | Self::NotCompared { .. }
@@ -390,6 +402,12 @@ impl fmt::Display for Note {
                 "{objects}: rung `{rung}` follows light through one copy, and what leaves it meets no other; rung `scene-16+3` follows it through \
                  all"
             ),
+            Self::OthersNotSeen { objects, rung, share } => write!(
+                f,
+                "{objects}: other clear bodies overlap it in the view, of which rung `{rung}` shows nothing: at most {} of its light comes from \
+                 them; rung `scene-16+3` shows them",
+                percent(*share)
+            ),
             Self::SimplerThroughOthers { objects } => write!(
                 f,
                 "{objects}: through clear bodies it looks as rung `drift` draws it: no light comes through it there, all light enters it, and \
@@ -400,7 +418,7 @@ impl fmt::Display for Note {
                 "{count} bodies: too many to look which of them share space or stand before one another, so each clear one is drawn as if \
                  it were alone; rung `scene-16` follows light through all"
             ),
-            Self::ShareSpace { objects, with, there, rung } if rung.is_among() || *rung == Rung::Reference => write!(
+            Self::ShareSpace { objects, with, there, shown: true, .. } => write!(
                 f,
                 "{objects}: shares space with the clear `{with}`; `{there}` is there, unless extras.lapidary.priority says otherwise"
             ),
@@ -512,6 +530,10 @@ mod tests {
             line_of(Note::LightsNotSeen { objects: objects(1), rung }, "add --with light"),
             line_of(Note::CopiesApart { objects: objects(1), rung }, "what leaves it meets no other"),
             line_of(
+                Note::OthersNotSeen { objects: objects(2), rung, share: 0.031 },
+                "of which rung `convex-8` shows nothing: at most 3 % of its light",
+            ),
+            line_of(
                 Note::SimplerThroughOthers { objects: objects(1) },
                 "through clear bodies it looks as rung `drift` draws it",
             ),
@@ -524,11 +546,18 @@ mod tests {
                     with: "glass".to_owned(),
                     there: "glass".to_owned(),
                     rung: Rung::Reference,
+                    shown: true,
                 },
                 "shares space with the clear `glass`; `glass` is there",
             ),
             line_of(
-                Note::ShareSpace { objects: objects(1), with: "glass".to_owned(), there: "glass".to_owned(), rung },
+                Note::ShareSpace {
+                    objects: objects(1),
+                    with: "glass".to_owned(),
+                    there: "glass".to_owned(),
+                    rung,
+                    shown: false,
+                },
                 "follows light as if it were alone",
             ),
             line_of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),

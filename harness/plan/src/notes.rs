@@ -3,7 +3,7 @@
 mod merge;
 mod shared_space;
 
-use super::{Decisions, thickness};
+use super::{Decisions, thickness, through};
 use crate::among;
 use crate::remembered::Remembered;
 use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
@@ -95,6 +95,12 @@ impl Case<'_> {
         }
         if is_followed && !rung.is_among() && among::copies_overlap(self.object, self.scene, self.request.size) {
             notes.push(Note::CopiesApart { objects: objects.clone(), rung });
+        }
+        let is_alone = is_followed && !rung.is_among() && !self.request.without.has(Effect::Behind);
+        if is_alone && among::overlaps(self.object, self.scene, self.request.size).is_some() {
+            let share = through::share_of_others(self.object, self.scene, self.request.size);
+            // A share of nothing is nothing left out.
+            notes.extend((share > 0.0).then(|| Note::OthersNotSeen { objects: objects.clone(), rung, share }));
         }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {

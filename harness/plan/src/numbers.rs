@@ -15,6 +15,11 @@ pub(super) fn short(value: f32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// Formats a share in percent.
+pub(crate) fn percent(share: f32) -> String {
+    format!("{} %", (100.0 * share).round())
+}
+
 /// Formats a colour as three numbers, or as one if its channels are the same.
 pub(super) fn triple(value: Vec3) -> String {
     let [red, green, blue] = value.to_array().map(short);

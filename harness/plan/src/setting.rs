@@ -1,29 +1,55 @@
-//! Whether an opaque body that shares space with a cut stone only holds it.
+//! Whether a body that shares space with a cut stone only holds it, or stands beside it.
 
+use crate::among;
 use crate::remembered::Remembered;
 use glam::DVec3;
 use lapidary_scene::convex::planes_of_convex;
 use lapidary_scene::polyhedron::Plane;
-use lapidary_scene::{Bounds, Mesh, Object};
+use lapidary_scene::{Bounds, Mesh, Object, Place};
 
 /// Depth, as a share of a stone's radius, up to which the prongs and the seat of a setting are modelled into it.
 const DEEPEST: f64 = 0.25;
+/// The same up to which a body only touches a stone: a hundredth of what a picture of 512 pixels shows.
+const TOUCHES: f64 = 2e-5;
 
-/// Whether `other` is opaque, and reaches into a convex stone no deeper than a setting does: light inside that would meet it there
-/// meets it where it leaves the stone.
+/// Whether `other` is opaque or a cut stone, and reaches into a convex stone, or any of its copies, no deeper than a setting does:
+/// light inside that would meet it there meets it where it leaves the stone.
 pub(crate) fn holds(other: &Object, stone: &Object) -> bool {
     static FOUND: Remembered<bool> = Remembered::new();
-    let is_opaque = !other.material.is_clear() && !other.material.scatters();
-    is_opaque && stone.copies.is_none() && FOUND.of_both(&stone.mesh, &other.mesh, stays_out)
+    let material = &other.material;
+    let is_cut = material.has_clear_inside() && among::is_convex(other) && !among::is_smooth(other);
+    let may = is_cut || !material.is_clear() && !material.scatters();
+    may && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other, DEEPEST))
 }
 
-/// Whether no triangle of `other` meets the stone's inside, deeper than a setting.
-fn stays_out(stone: &Mesh, other: &Mesh) -> bool {
-    let Some(planes) = planes_of_convex(stone) else { return false };
-    let deepest = DEEPEST * f64::from(Bounds::of(stone.positions.iter().copied()).radius());
-    let inner: Vec<Plane> = planes.iter().map(|plane| Plane { distance: plane.distance - deepest, ..*plane }).collect();
-    let mut triangles = other.triangles().map(|corners| corners.map(|corner| corner.as_dvec3()));
-    !triangles.any(|triangle| is_cut_by(triangle.to_vec(), &inner))
+/// Whether `other` is not clear, and a part of it lies within a convex stone or one of its copies.
+pub(crate) fn enters(other: &Object, stone: &Object) -> bool {
+    static FOUND: Remembered<bool> = Remembered::new();
+    !other.material.is_clear() && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| !stays_out(stone, other, TOUCHES))
+}
+
+/// Whether no triangle of `other` meets the inside of a stone or of its copies, deeper than a share of their radius.
+fn stays_out(stone: &Object, other: &Mesh, deepest: f64) -> bool {
+    let Some(planes) = planes_of_convex(stone.shape()) else { return false };
+    let Bounds { min, max } = Bounds::of(stone.shape().positions.iter().copied());
+    let places = stone.copies.as_ref().map_or(&[Place::IDENTITY][..], |copies| &copies.places);
+    let (middle, radius) = (0.5 * (min + max).as_dvec3(), 0.5 * f64::from((max - min).length()));
+    places.iter().all(|place| {
+        let to_world = place.transform();
+        let scale = f64::from(place.scale);
+        let (middle, radius) = (to_world.transform_point3(middle), scale * radius);
+        let inner = |plane: &Plane| {
+            let normal = to_world.transform_vector3(plane.normal) / scale;
+            let distance = scale * plane.distance + normal.dot(to_world.w_axis.truncate());
+            Plane { normal, distance: distance - deepest * radius }
+        };
+        let inner: Vec<Plane> = planes.iter().map(inner).collect();
+        let (least, most) = (middle - radius, middle + radius);
+        let is_near =
+            |[a, b, c]: &[DVec3; 3]| a.max(*b).max(*c).cmpge(least).all() && a.min(*b).min(*c).cmple(most).all();
+        let triangles = other.triangles().map(|corners| corners.map(|corner| corner.as_dvec3()));
+        !triangles.filter(is_near).any(|triangle| is_cut_by(triangle.to_vec(), &inner))
+    })
 }
 
 /// Whether anything of a flat, convex ring of corners lies below all planes.

@@ -151,7 +151,7 @@ pub const SHOTS: [Shot; 57] = [
     Shot {
         paragraph: "What light that leaves a stone meets: a diamond and an emerald on a tray. Most of their light comes from the tray and from \
             what stands on it, and the diamond shows the emerald: here by the triangles of all.",
-        ..shot("tray", "Stones on a tray", "tray", BY_MATERIAL)
+        ..shot("tray", "Stones on a tray", "tray", "scene-16+3")
     },
     Shot {
         outside: Some(Outside::Bodies),

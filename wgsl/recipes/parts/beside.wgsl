@@ -6,6 +6,9 @@
 
 // Rays that leave meet the triangles of bodies that are not clear. Called for by a body around the stone.
 override EFFECT_AROUND: bool = false;
+// Rays inside meet the triangles of bodies that are not clear and reach into the stone. Called for by a body that
+// shares space with it, with EFFECT_AROUND.
+override EFFECT_NESTED: bool = false;
 
 //+around {
 // The root is first.
@@ -21,9 +24,10 @@ fn beside_share(packed: f32) -> vec3f {
     return roots * roots;
 }
 
-// Radiance that arrives along a ray from what it meets, and the distance; below 0 if it meets nothing.
-fn beside_met(position: vec3f, direction: vec3f) -> vec4f {
-    let hit = trace_nearest(position, direction, BVH_TRACE_NONE);
+// Radiance that arrives along a ray from what it meets within a distance, and how far that is; below 0 if it meets
+// nothing.
+fn beside_met(position: vec3f, direction: vec3f, within: f32) -> vec4f {
+    let hit = trace_nearest(position, direction, BVH_TRACE_NONE, within);
     if (hit.triangle == BVH_TRACE_NONE) {
         return vec4f(0.0f, 0.0f, 0.0f, -1.0f);
     }

@@ -15,8 +15,10 @@ fn gem_hit_both(
 
 // Light that leaves the stone meets triangles of other bodies: only by the recipe gem_walk.
 override EFFECT_AROUND: bool = false;
+// Rays inside meet bodies that reach into the stone: only by the recipe gem_walk.
+override EFFECT_NESTED: bool = false;
 
 // Nothing is met.
-fn beside_met(position: vec3f, direction: vec3f) -> vec4f {
+fn beside_met(position: vec3f, direction: vec3f, within: f32) -> vec4f {
     return vec4f(0.0f, 0.0f, 0.0f, -1.0f);
 }

@@ -44,6 +44,9 @@ const GEM_DISPERSION_PAPER: u32 = 0u;
 const GEM_DISPERSION_SEPARATE: u32 = 2u;
 const GEM_DISPERSION_SPLIT: u32 = 3u;
 
+// Farther than anything that a ray may meet.
+const GEM_FAR = 1e37f;
+
 struct GemView {
     clip_from_world: mat4x4f,
     eye: vec3f,
@@ -204,7 +207,7 @@ fn gem_meeting(position: vec3f, direction: vec3f) -> GemMeeting {
         meeting.distance = screen_distance(gem_world_position(position), gem_world_direction(direction));
     }
     if (EFFECT_AROUND) {
-        let met = beside_met(gem_world_position(position), gem_world_direction(direction));  //+around
+        let met = beside_met(gem_world_position(position), gem_world_direction(direction), GEM_FAR);  //+around
         meeting.is_bounded = met.w >= 0.0f;  //+around
         meeting.bounded = met.rgb;  //+around
     }
@@ -334,8 +337,24 @@ fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
         (*ray).travelled += hit.distance;
         (*ray).followed = hit.hit && !gem_ends((*ray).travelled);
     }
+    var way = hit.distance;
+    var met = vec4f(0.0f, 0.0f, 0.0f, -1.0f);
+    if (EFFECT_AROUND && EFFECT_NESTED && (*ray).followed) {
+        let within = gem_world_length(hit.distance);  //+around,nested
+        let start = gem_world_position((*ray).position);  //+around,nested
+        met = beside_met(start, gem_world_direction((*ray).direction), within);  //+around,nested
+        way *= select(1.0f, met.w / within, met.w >= 0.0f && within > 0.0f);  //+around,nested
+    }
     if (EFFECT_ABSORPTION && (*ray).followed) {
-        (*ray).throughput *= gem_transmittance(hit.distance);
+        (*ray).throughput *= gem_transmittance(way);
+    }
+    if (EFFECT_AROUND && EFFECT_NESTED) {
+        if (met.w >= 0.0f) {
+            // Nothing of the light comes back from there.
+            (*ray).radiance += (*ray).throughput * met.rgb;
+            (*ray).throughput = vec3f(0.0f);
+            (*ray).followed = false;
+        }
     }
     return (*ray).followed;
 }

@@ -108,9 +108,10 @@ fn trace_push(height: u32, child: TraceChild) -> u32 {
     return height;
 }
 
-// The nearest triangle through which a ray leaves the solid, or, from both sides, enters or leaves one.
-fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
-    var hit = bvh_trace_start(TRACE_FAR);
+// The nearest triangle within a distance through which a ray leaves the solid, or, from both sides, enters or
+// leaves one.
+fn trace_nearest(origin: vec3f, direction: vec3f, left: u32, within: f32) -> BvhTraceHit {
+    var hit = bvh_trace_start(within);
     let whole = bvh_trace_bounds(nodes[0]);
     let ray = bvh_trace_ray(origin, direction, whole.lower, whole.upper);
     if (TRAVERSAL_TWO_SIDED) {

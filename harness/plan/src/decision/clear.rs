@@ -85,6 +85,9 @@ impl Case<'_> {
     }
 
     pub(super) fn nested(&self) -> Answer {
+        if let Some(other) = self.met_inside() {
+            return on(format!("{} reaches into it", other.name));
+        }
         // By another rung, what only holds the stone is met where light leaves it.
         let shares = if self.is_among() {
             among::shares_space(self.object, self.scene)
@@ -131,11 +134,20 @@ impl Case<'_> {
         }
     }
 
-    pub(super) fn light(&self) -> Answer {
+    /// Whether a rung is asked for, which shows lights on request alone.
+    fn hides_lights(&self) -> bool {
         let is_named = self.request.rung_of(self.object) != Rung::ByMaterial && !self.is_among();
+        is_named && !self.request.lights
+    }
+
+    fn sees_lights(&self) -> bool {
+        !self.scene.lights.is_empty() && !self.hides_lights() && !self.request.without.has(Effect::Light)
+    }
+
+    pub(super) fn light(&self) -> Answer {
         match self.scene.lights.len() {
             0 => off("no lights"),
-            _ if is_named && !self.request.lights => off("a rung is asked for: --with light"),
+            _ if self.hides_lights() => off("a rung is asked for: --with light"),
             // Copies, wavelengths and bounds leave no room for two more buffers.
             _ if matches!(self.rung.spectrum(), Spectrum::Separate(_))
                 && self.instances().0
@@ -158,20 +170,32 @@ impl Case<'_> {
         }
     }
 
+    /// Returns the first body that is not clear, and that rays inside a convex stone meet.
+    fn met_inside(&self) -> Option<&Object> {
+        let meets = !self.is_among() && !self.request.without.has(Effect::Around) && self.around().0;
+        if meets { among::reached_by_opaque(self.object, self.scene) } else { None }
+    }
+
     /// The same under a rung that follows light through one body: what leaves that meets triangles.
     fn around_one(&self) -> Answer {
         let walks = self.rung.geometry_of_inside() == Some(Geometry::Walk);
         match self.request.outside {
             _ if !walks => off(format!("the rung {} follows light through one body", self.rung)),
             Some(Outside::Triangles) | None
-                if matches!(self.rung.spectrum(), Spectrum::Separate(_)) || self.instances().0 =>
+                if !among::fits_around(
+                    self.instances().0,
+                    matches!(self.rung.spectrum(), Spectrum::Separate(_)),
+                    self.sees_lights(),
+                ) =>
             {
                 off("the stage reads as many buffers as devices offer")
             }
             Some(Outside::Triangles) => self.meets("asked for, ", usize::MAX),
             Some(other) => off(format!("asked for: {other}")),
             None if self.request.quality == Quality::Fast => off("quality fast"),
-            None => among::beside(self.object, self.scene, self.request.size)
+            None => among::reached_by_opaque(self.object, self.scene)
+                .map(|other| format!("{} reaches into it", other.name))
+                .or_else(|| among::beside(self.object, self.scene, self.request.size))
                 .map_or_else(|| off("no body stands around it, or is seen straight through it"), on),
         }
     }

@@ -31,6 +31,12 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
         {
             Some(objects)
         }
+        (Note::OthersNotSeen { objects, rung, share }, Note::OthersNotSeen { rung: other, share: another, .. })
+            if rung == other =>
+        {
+            *share = share.max(*another);
+            Some(objects)
+        }
         (Note::TooDeep { objects, within, rung }, Note::TooDeep { rung: other, within: others, .. })
             if rung == other =>
         {
@@ -43,9 +49,9 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
             Some(objects)
         }
         (
-            Note::ShareSpace { objects, with, there, rung },
-            Note::ShareSpace { with: others, there: here, rung: other, .. },
-        ) if rung == other && with == others && there == here => Some(objects),
+            Note::ShareSpace { objects, with, there, rung, shown },
+            Note::ShareSpace { with: others, there: here, rung: other, shown: also, .. },
+        ) if rung == other && with == others && there == here && shown == also => Some(objects),
         (Note::Within { objects, around, rung }, Note::Within { around: others, rung: other, .. })
             if rung == other && around == others =>
         {

@@ -31,7 +31,9 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
         .map(|((object, decisions), place)| {
             let bounds = Bounds::of(object.mesh.positions.iter().copied());
             let shows = |effect| decisions.rung == Rung::Reference || decisions.has(effect);
-            let nested = [shows(Effect::Nested), shows(Effect::Nested) && shows(Effect::Around)];
+            let nested = shows(Effect::Nested);
+            let is_among = decisions.rung.is_among() || decisions.rung == Rung::Reference;
+            let nested = [nested && is_among, nested && shows(Effect::Around)];
             Boxed { object, rung: decisions.rung, nested, bounds, place }
         })
         .collect();
@@ -66,7 +68,8 @@ pub(super) fn notes(scene: &Scene, decisions: &[&Decisions]) -> Vec<Note> {
                 _ => {
                     let there = if around.comes_before(body) { around } else { body };
                     let (with, there) = (around.object.name.clone(), there.object.name.clone());
-                    add(&mut notes, Note::ShareSpace { objects, with, there, rung: around.rung });
+                    let shown = around.nested[usize::from(!body.object.material.is_clear())];
+                    add(&mut notes, Note::ShareSpace { objects, with, there, rung: around.rung, shown });
                 }
             }
         }

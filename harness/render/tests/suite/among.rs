@@ -341,6 +341,32 @@ fn a_clear_body_is_seen_behind_a_pane() {
     }
 }
 
+/// A prong in a stone is met by rays inside, and a band around it by what leaves: by the planes of its facets the stone looks as by
+/// the triangles of all bodies. Both follow the same rays, which end with less than a hundredth of the light.
+#[test]
+fn a_stone_in_its_setting_is_walked_as_it_is_by_triangles() {
+    let stone = Object::new("stone", flat(&Scene::named("octahedron").expect("built in").objects[0].mesh), glass(1.5));
+    let bar = |half: [f64; 3], at: [f64; 3]| {
+        let mesh = cube(1.0);
+        let [half, at] = [half, at].map(|sides| DVec3::from_array(sides).as_vec3());
+        let positions = mesh.positions.iter().map(|position| *position * half + at).collect();
+        Object::new("bar", Mesh { positions, ..mesh }, matte(Vec3::new(0.9, 0.3, 0.1)))
+    };
+    let within = bar([0.1, 0.6, 0.1], [0.75, 0.0, 0.0]);
+    let behind = bar([2.0, 2.0, 0.1], [0.0, 0.0, -1.4]);
+    let scene = scene(vec![stone, within, behind]);
+    let settings = |rung: &str| Settings { environment: Environment::Studio, ..of_rung(rung) };
+    let chosen = drawn(&scene, &settings("by-material"));
+    assert!(chosen.notes.is_empty() || !chosen.notes[0].to_string().contains("alone"), "{:?}", chosen.notes);
+    let by_triangles = drawn(&scene, &settings("scene-32"));
+    let (walked, _) = difference(&drawn(&scene, &settings("walk-16")), &by_triangles, 20);
+    let (unmet, _) = {
+        let without = Effects::of(&[Effect::Nested]);
+        difference(&drawn(&scene, &Settings { without, ..settings("walk-16") }), &by_triangles, 20)
+    };
+    assert!(walked < 0.02 && unmet > 3.0 * walked, "{walked}, and {unmet} without the prong");
+}
+
 /// Numbers from 0 to 1 that follow from a seed (splitmix64).
 struct Numbers(u64);
 

@@ -295,12 +295,7 @@ const FAULTS: [Fault; 23] = [
         "",
     ),
     fault(["brilliant", "convex-4+paper"], "only the last way counts", "travelled += hit.", "travelled = hit."),
-    fault(
-        ["sapphire", "convex-4"],
-        "all ways absorb alike",
-        "gem_transmittance(hit.distance)",
-        "gem_transmittance(1.0f)",
-    ),
+    fault(["sapphire", "convex-4"], "all ways absorb alike", "gem_transmittance(way)", "gem_transmittance(1.0f)"),
     fault(
         ["ruby", "convex-16"],
         "rays end by blue alone",
