@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the module convex_walk.
 // requires: absorption, bounds_trace, bvh_trace, convex_trace, convex_walk, dispersion, environment, fresnel
-// requires: proxy_geometry, ray_footprint, refraction, screen_trace
-// parts: mesh, surroundings, bodies, beside, trace_nearest, lights, glints, gem_shading, screen
+// requires: microfacet, proxy_geometry, ray_footprint, refraction, screen_trace, split_sum
+// parts: mesh, surroundings, bodies, beside, trace_nearest, metal, lights, glints, gem_shading, screen
 //
 // Draw it like the recipe `gem`, and also bind the stone's facet planes and their map, made once for
 // a cut (FacetMap in the crate of convex_walk). Each draw takes one stone, which must be convex.

@@ -359,9 +359,10 @@ impl Case<'_> {
 
     /// Answers for a metal that light through this body meets.
     pub(super) fn metal_met(&self) -> Answer {
-        match self.first_met(|object| object.material.is_metal()) {
-            Some(object) if self.is_among() => on(format!("{} is a metal", object.name)),
-            _ => off("light meets no metal"),
+        let meets = !self.request.without.has(Effect::Around) && self.around().0;
+        match self.scene.beside_stones().find(|object| object.material.is_metal()) {
+            Some(object) if meets => on(format!("{} is a metal", object.name)),
+            _ => off("light meets no metal by its triangles"),
         }
     }
 

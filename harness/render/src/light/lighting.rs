@@ -116,7 +116,8 @@ impl<'a> Lighting<'a> {
         if let Some(known) = self.beside.get() {
             return Ok(*known);
         }
-        let made = Beside::new(builder, self.scene, self.around())?;
+        let metals = !self.settings.without.has(Effect::Metal);
+        let made = Beside::new(builder, self.scene, self.around(), metals)?;
         Ok(*self.beside.get_or_init(|| made))
     }
 
