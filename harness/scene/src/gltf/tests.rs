@@ -118,7 +118,7 @@ fn opaque_bodies_have_the_nearest_index() {
         let scene = scene.expect("a scene");
         assert_eq!(scene.objects[0].material.ior, drawn);
         let clause = format!("index of refraction: `ior` {ior:?} of material `gem` ({says})");
-        assert_eq!(scene.lacking, [clause]);
+        assert_eq!(scene.lacking.clauses(), [clause]);
     }
 }
 
@@ -372,7 +372,7 @@ fn ten_thousand_roots_load_as_so_many_bodies() {
         d["scenes"][0]["nodes"] = (0..10_000).collect();
     });
     let scene = scene.unwrap();
-    assert_eq!((scene.objects.len(), scene.lacking.len()), (10_000, 1));
+    assert_eq!((scene.objects.len(), scene.lacking.clauses().len()), (10_000, 1));
 }
 
 #[test]

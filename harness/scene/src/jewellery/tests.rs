@@ -5,7 +5,7 @@ use crate::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
 use crate::surfaces::{sphere, torus};
-use crate::{Averaging, Camera, Coverage, Material, Mesh};
+use crate::{Averaging, Camera, Coverage, Lacking, Material, Mesh};
 
 fn brilliant() -> Mesh {
     round_brilliant(&BrilliantParameters::TOLKOWSKY).unwrap().to_mesh(Averaging::Angle)
@@ -19,7 +19,7 @@ fn scene(objects: Vec<Object>) -> Scene {
         lights: Vec::new(),
         light_radii: Vec::new(),
         camera,
-        lacking: Vec::new(),
+        lacking: Lacking::default(),
     }
 }
 
