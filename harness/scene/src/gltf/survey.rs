@@ -10,7 +10,7 @@ use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use serde_json::{Map, Value};
 
-use super::diamond::Diamond;
+use super::diamond::{Diamond, NAME as DIAMOND};
 use super::error::excerpt;
 use super::extension::Extension;
 use super::limits::{KNOWN_EXTENSIONS, NOT_DRAWN};
@@ -195,7 +195,10 @@ fn surface(json: &JsonMaterial, material: &Material, user: &User, lacking: &mut 
         lacking.note("index of refraction", what, if material.ior == 1.0 { "drawn as 1" } else { "drawn as 4" }, user);
     }
     let ior = Extension::of(extensions(json), "KHR_materials_ior").and_then(|ior| ior.number("ior")).ok().flatten();
-    if let Some(ior) = ior.filter(|ior| material.transmission == 0.0 && nearest_index(*ior) != *ior as f32) {
+    // A vendor's mark gives an index of its own.
+    let is_marked = extensions(json).is_some_and(|all| all.contains_key(DIAMOND));
+    let is_drawn = |ior: &f64| is_marked || nearest_index(*ior) == *ior as f32;
+    if let Some(ior) = ior.filter(|ior| !is_drawn(ior)) {
         let instead = if nearest_index(ior) == 1.0 { "drawn as 1" } else { "drawn as 4" };
         lacking.note("index of refraction", format!("`ior` {ior:?}"), instead, user);
     }
