@@ -17,7 +17,7 @@ use super::limits::{KNOWN_EXTENSIONS, NOT_DRAWN};
 use super::material::{self, Known, Materials, extensions, nearest_index};
 use super::nodes::ShownNode;
 use super::texture::FACTOR;
-use super::{extras, instances, light_node, specular_glossiness};
+use super::{animation, extras, instances, light_node, specular_glossiness};
 use crate::lacking::{Lacking, Matter, User};
 use crate::{Material, Opening, TextureSlot};
 
@@ -48,9 +48,12 @@ pub(super) fn lacking(
         inside(json, &known.plain, &user, &mut lacking);
     }
     cameras(root, nodes, opening, &mut lacking);
-    let moves = opening.time.is_some() && root.animations.iter().any(|animation| !animation.channels.is_empty());
-    if !root.animations.is_empty() && !moves {
-        lacking.note("animations", root.animations.len().to_string(), "bodies are drawn at rest", &User::file());
+    if !root.animations.is_empty() && (opening.time.is_none() || !animation::moves_nodes(root)) {
+        let instead = match opening.time {
+            None => "bodies are drawn at rest",
+            Some(_) => "none moves a node; bodies are drawn at rest",
+        };
+        lacking.note("animations", root.animations.len().to_string(), instead, &User::file());
     }
     let is_known = |name: &str| KNOWN_EXTENSIONS.contains(&name) || NOT_DRAWN.iter().any(|(known, _)| *known == name);
     for name in root.extensions_used.iter().filter(|name| !is_known(name)) {
