@@ -59,10 +59,11 @@ pub(super) fn add_objects(
         let material_index = primitive.material.map(|material| material.value());
         let has_coordinates = meshes_in_world.iter().all(|(mesh, _)| !mesh.uvs.is_empty());
         let mut material = materials.get(material_index, has_coordinates, &user)?;
-        // glTF states the thickness in the mesh's space, unlike its other lengths.
+        // glTF states the thickness in the mesh's space, unlike its other lengths. A solid that is scaled to nothing is no thin
+        // wall.
         if material.thickness > 0.0 {
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
-            material.thickness = thickness.min(f32::MAX);
+            material.thickness = thickness.clamp(f32::MIN_POSITIVE, f32::MAX);
         }
         let diamond = materials.diamond(material_index);
         for (mesh, copies) in meshes_in_world {

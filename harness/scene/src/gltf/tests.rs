@@ -127,6 +127,21 @@ fn an_index_that_cannot_be_drawn_is_the_nearest_and_said() {
     }
 }
 
+/// A solid that its node makes flat, or a point, is no thin wall: its mesh is at fault.
+#[test]
+fn a_solid_of_scale_0_stays_a_solid() {
+    for scale in [[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]] {
+        let scene = load_changed(|d| {
+            d["nodes"][0]["scale"] = json!(scale);
+            d["meshes"][0]["primitives"][0]["material"] = json!(0);
+            d["materials"][0]["extensions"] = json!({
+                "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 2},
+            });
+        });
+        assert!(scene.expect("a scene").objects[0].material.has_clear_inside(), "{scale:?}");
+    }
+}
+
 #[test]
 fn buffers_may_be_base64_or_files_beside() {
     use base64::Engine;
