@@ -8,6 +8,7 @@ use lapidary_render::Settings;
 use lapidary_render::file;
 use lapidary_scene::Scene;
 use lapidary_scene::convex::planes_of_convex;
+use lapidary_scene::environment_map::EnvironmentMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -112,6 +113,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let files = files(&arguments.folder)?;
     if files.is_empty() {
         return Err(Failure(format!("{}: has no .glb or .gltf file; name another folder", arguments.folder.display())));
+    }
+    // Not once for each file.
+    if let Some(environment) = &arguments.environment {
+        EnvironmentMap::load_counting(environment)?;
     }
     if let Some(out) = &arguments.out {
         std::fs::create_dir_all(out).map_err(|error| in_folder(out, &error))?;

@@ -201,4 +201,34 @@ mod tests {
         let message = named_bodies(&names, "Gem rubi", "--material").expect_err("none").0;
         assert!(message.contains("no node or material `Gem rubi`") && message.contains("`Gem ruby`"), "{message}");
     }
+
+    /// A name wins over a pattern and a node over its material, in either order; of equal ones the last wins.
+    #[test]
+    fn the_more_exact_name_counts() {
+        let preset = |name: &str| Preset::named(name).expect("a preset");
+        let mut scene = Scene::named("brilliant").expect("built in");
+        let one = scene.objects.remove(0);
+        let object = |node: &str, material: &str| {
+            let material = Material { name: material.to_owned(), ..one.material.clone() };
+            Object { name: node.to_owned(), material, ..one.clone() }
+        };
+        scene.objects = vec![object("Gem.1", "Red"), object("Gem.2", "Red"), object("Gem.3", "Blue")];
+        let given = |options: &[(Option<&str>, &str)]| {
+            let option = |(which, name): &(Option<&str>, &str)| (which.map(str::to_owned), preset(name));
+            let asked = Asked { material: options.iter().map(option).collect(), ..Asked::default() };
+            let presets = asked.presets(&scene).ok().expect("presets");
+            presets.iter().map(|preset| preset.map_or("", |preset| preset.name)).collect::<Vec<_>>().join(" ")
+        };
+        let mut options =
+            [(Some("Gem.1"), "ruby"), (Some("Red"), "emerald"), (Some("Gem*"), "quartz"), (None, "diamond")];
+        for _ in 0..4 {
+            assert_eq!(given(&options), "ruby emerald quartz", "{options:?}");
+            options.rotate_left(1);
+        }
+        options.reverse();
+        assert_eq!(given(&options), "ruby emerald quartz", "{options:?}");
+        assert_eq!(given(&[(Some("Gem*"), "ruby"), (Some("*.2"), "quartz")]), "ruby quartz ruby");
+        assert_eq!(given(&[(Some("*.2"), "quartz"), (Some("Gem*"), "ruby")]), "ruby ruby ruby");
+        assert_eq!(given(&[(Some("Blue"), "quartz")]), "  quartz");
+    }
 }
