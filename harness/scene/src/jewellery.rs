@@ -85,8 +85,8 @@ impl fmt::Display for Guess {
 /// Returns what the bodies of a scene look like that are marked as neither clear with an inside nor scattering, but for those
 /// that are `given` a material. Bodies that look like nothing in particular are left out.
 ///
-/// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex, with flat
-/// facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
+/// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex or nearly,
+/// with flat facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
 #[must_use]
 pub fn guesses(scene: &Scene, given: impl Fn(usize) -> bool) -> Vec<Guess> {
     let looks: Vec<Option<(Look, Vec<String>)>> = scene
@@ -142,7 +142,7 @@ fn look(object: &Object) -> Option<(Look, Vec<String>)> {
     let is_named_metal = words.metal.is_some() && words.stone.is_none();
     if !is_named_metal {
         let cut = Cut::of(object.shape());
-        let by_name = words.stone.as_ref().filter(|_| cut.is_closed() && (cut.is_faceted() || cut.is_convex()));
+        let by_name = words.stone.as_ref().filter(|_| cut.is_closed() && (cut.is_faceted() || cut.is_nearly_convex()));
         if by_name.is_some() || cut.is_stone() {
             let name = by_name.map(|(word, _)| says(word));
             let how = match () {

@@ -186,7 +186,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     let mut waiting = vec![PathBuf::new()];
     while let Some(inner) = waiting.pop() {
-        let path = folder.join(&inner);
+        let path = if inner.as_os_str().is_empty() { folder.to_owned() } else { folder.join(&inner) };
         for entry in std::fs::read_dir(&path).map_err(|error| in_folder(&path, &error))? {
             let entry = entry.map_err(|error| in_folder(&path, &error))?;
             let name = inner.join(entry.file_name());

@@ -75,8 +75,13 @@ impl Cut {
         self.is_known && self.closed >= CLOSED
     }
 
-    pub(super) fn is_convex(&self) -> bool {
+    fn is_convex(&self) -> bool {
         self.is_known && self.convex >= CONVEX
+    }
+
+    /// Whether it is convex, or would be but for bent facets.
+    pub(super) fn is_nearly_convex(&self) -> bool {
+        self.is_convex() || self.is_known && self.filled >= FILLED
     }
 
     pub(super) fn is_faceted(&self) -> bool {
@@ -85,8 +90,11 @@ impl Cut {
 
     /// Whether the shape alone is that of a cut stone, convex or with facets that are bent.
     pub(super) fn is_stone(&self) -> bool {
-        let is_near = self.is_convex() || self.filled >= FILLED;
-        self.is_closed() && is_near && self.is_faceted() && FACETS.contains(&self.facets) && !self.is_prism
+        self.is_closed()
+            && self.is_nearly_convex()
+            && self.is_faceted()
+            && FACETS.contains(&self.facets)
+            && !self.is_prism
     }
 }
 
@@ -94,8 +102,8 @@ impl fmt::Display for Cut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match () {
             () if self.is_convex() => f.write_str("closed and convex")?,
-            () if self.is_stone() => {
-                write!(f, "closed, though not convex ({:.0} % of its hull)", 100.0 * self.filled)?;
+            () if self.is_nearly_convex() => {
+                write!(f, "closed, though not convex ({:.0} % of its hull)", (100.0 * self.filled).floor())?;
             }
             () => f.write_str("closed")?,
         }

@@ -81,22 +81,33 @@ fn flat(mesh: &Mesh) -> Mesh {
     }
 }
 
-/// Stones that were modelled by hand have facets that are bent by a hundredth of their size; what is hollow has as many.
-#[test]
-fn a_stone_with_bent_facets_is_told_from_a_ring() {
-    let mut bent = brilliant();
-    for position in &mut bent.positions {
+/// A mesh with dents and bulges.
+fn waved(mut mesh: Mesh) -> Mesh {
+    for position in &mut mesh.positions {
         // By the place alone: corners that are written twice stay one.
         let wave = (40.0 * position.x).sin() * (47.0 * position.z).sin() * (31.0 * position.y + 1.0).cos();
         *position *= 1.0 + 0.1 * wave;
     }
-    let bent = flat(&bent);
+    mesh
+}
+
+/// Stones that were modelled by hand have facets that are bent by a hundredth of their size; what is hollow has as many.
+#[test]
+fn a_stone_with_bent_facets_is_told_from_a_ring() {
+    let bent = flat(&waved(brilliant()));
     let cut = Cut::of(&bent);
-    assert!(!cut.is_convex() && cut.is_stone(), "{cut:?}");
+    assert!(cut.is_stone(), "{cut:?}");
     let object = Object::new("Cylinder", bent, plastic("_Glass"));
     let (look, evidence) = look(&object).expect("a stone");
     assert_eq!(look, Look::Stone("diamond"));
     assert!(evidence[0].starts_with("closed, though not convex (9"), "{evidence:?}");
+    // A smooth body is one by its name alone.
+    let Mesh { positions, indices, .. } = waved(sphere(1.0, 20));
+    let pebble = Mesh::with_shared_normals(positions, indices, Averaging::Angle);
+    let cut = Cut::of(&pebble);
+    assert!(!cut.is_faceted() && cut.to_string().starts_with("closed, though not convex (9"), "{cut:?}");
+    assert_eq!(looks("thing", pebble.clone(), plastic("m")), None);
+    assert_eq!(looks("Gem", pebble, plastic("m")), Some(Look::Stone("diamond")));
     let ring = flat(&torus(2.0, 0.5, 12, 6));
     let cut = Cut::of(&ring);
     assert!(cut.is_closed() && cut.is_faceted() && !cut.is_stone(), "{cut:?}");
@@ -115,7 +126,7 @@ fn a_drum_of_many_sides_is_no_stone() {
     });
     let drum = flat(&Mesh::with_shared_normals(positions, facets.collect(), Averaging::Angle));
     let cut = Cut::of(&drum);
-    assert!(cut.is_convex() && cut.is_faceted() && cut.is_closed() && !cut.is_stone(), "{cut:?}");
+    assert!(cut.is_nearly_convex() && cut.is_faceted() && cut.is_closed() && !cut.is_stone(), "{cut:?}");
 }
 
 #[test]
