@@ -10,9 +10,7 @@ use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::{
-    Dispersion, Environment, Material, Mesh, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world,
-};
+use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, TextureSlot, clip_from_world};
 use merge::add;
 use std::f64::consts::PI;
 
@@ -66,7 +64,7 @@ struct Case<'a> {
 impl Case<'_> {
     fn notes(&self, around: DVec3) -> Vec<Note> {
         let objects = Objects { first: self.object.name.clone(), count: 1 };
-        if has_no_area(&self.object.mesh) {
+        if !self.object.mesh.indices.is_empty() && !self.object.mesh.has_area() {
             return vec![Note::NoArea { objects }];
         }
         let rung = self.rung;
@@ -243,13 +241,6 @@ impl Case<'_> {
         (encoded.min_element() >= WHITE)
             .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.max_element() })
     }
-}
-
-/// Whether a mesh has triangles, and none with an area.
-fn has_no_area(mesh: &Mesh) -> bool {
-    // In f64, in which no square of an f32 is lost.
-    let across = |[a, b, c]: [Vec3; 3]| (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
-    !mesh.indices.is_empty() && mesh.triangles().all(|corners| across(corners) == DVec3::ZERO)
 }
 
 /// How far a part of a scattering body's base colour may be from that of its coefficients.

@@ -51,6 +51,21 @@ fn joined(meshes: &[Mesh]) -> Mesh {
     all
 }
 
+/// What a node scales by 0 keeps its name, by which it is told that nothing of it is drawn.
+#[test]
+fn a_body_without_area_stays() {
+    let [mesh, ..] = cuts();
+    for scale in [Vec3::ZERO, Vec3::X] {
+        let mut flat = mesh.clone();
+        flat.positions.iter_mut().for_each(|position| *position *= scale);
+        let mut scene =
+            scene(vec![Object::new("a", flat.clone(), diamond()), Object::new("b", mesh.clone(), diamond())]);
+        scene.part_stones(|_| false);
+        assert_eq!(scene.objects.len(), 2);
+        assert_eq!((&*scene.objects[0].name, &scene.objects[0].mesh), ("a", &flat));
+    }
+}
+
 #[test]
 fn fifty_three_stones_in_one_mesh_are_three_bodies() {
     let stones = stones(53);
