@@ -12,11 +12,14 @@ pub(crate) type Matter = Option<usize>;
 /// of its users (`material`).
 type Wish = (&'static str, String, &'static str, &'static str);
 
+/// Indices and names of a feature's users, with the material for which alone they need it.
+type Users = BTreeMap<(usize, Option<Matter>), Option<String>>;
+
 /// What a file asks for and is not drawn.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lacking {
-    /// Each feature with the indices and names of its users, and the material for which alone they need it.
-    wishes: BTreeMap<Wish, BTreeMap<(usize, Option<Matter>), Option<String>>>,
+    /// Each feature with its users.
+    wishes: BTreeMap<Wish, Users>,
     /// Material of each body.
     bodies: Vec<Matter>,
 }
@@ -93,7 +96,7 @@ impl Lacking {
 }
 
 /// Formats ``material `table` ``, or ``3 materials, first `table` ``.
-fn list(kind: &str, users: &BTreeMap<(usize, Option<Matter>), Option<String>>) -> String {
+fn list(kind: &str, users: &Users) -> String {
     if kind == FILE {
         return "the file".to_owned();
     }

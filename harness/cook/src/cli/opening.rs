@@ -216,7 +216,7 @@ mod tests {
         let given = |options: &[(Option<&str>, &str)]| {
             let option = |(which, name): &(Option<&str>, &str)| (which.map(str::to_owned), preset(name));
             let asked = Asked { material: options.iter().map(option).collect(), ..Asked::default() };
-            let presets = asked.presets(&scene).ok().expect("presets");
+            let presets = asked.presets(&scene).expect("presets");
             presets.iter().map(|preset| preset.map_or("", |preset| preset.name)).collect::<Vec<_>>().join(" ")
         };
         let mut options =

@@ -164,7 +164,7 @@ impl Part {
 fn filled(mesh: &Mesh) -> f64 {
     let triangles = mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| corners[k] as usize));
     let own = volume(&mesh.positions, triangles).0;
-    Hull::of(&mesh.positions).map_or(0.0, |hull| own / volume(&mesh.positions, hull.triangles.into_iter()).0)
+    Hull::of(&mesh.positions).map_or(0.0, |hull| own / volume(&mesh.positions, hull.triangles).0)
 }
 
 /// Whether normals are all along an axis, which is one of the first of them or across two, or across it.
