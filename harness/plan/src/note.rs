@@ -57,6 +57,11 @@ pub enum Note {
         /// The objects concerned.
         objects: Objects,
     },
+    /// Bodies whose triangles have no area, as after a scale of 0.
+    NoArea {
+        /// The objects concerned.
+        objects: Objects,
+    },
     /// Clear bodies without a thickness.
     ThinWall {
         /// The objects concerned.
@@ -265,6 +270,7 @@ impl Note {
             | Self::InsideOut { .. }
             | Self::Open { .. } => Gravity::Wrong,
             Self::BackNotDrawn { .. }
+            | Self::NoArea { .. }
             | Self::ThinWall { .. }
             | Self::FactorsAlone { .. }
             | Self::AllEnters { .. }
@@ -333,6 +339,10 @@ impl fmt::Display for Note {
                 f,
                 "{objects}: the material is doubleSided and the mesh is open, but the backs of its triangles are not drawn; give it a thickness of \
                  its own"
+            ),
+            Self::NoArea { objects } => write!(
+                f,
+                "{objects}: no triangle has an area, so that nothing of it is drawn; give its node a scale other than 0, or remove it"
             ),
             Self::ThinWall { objects, unused } => {
                 let lost = if unused.is_empty() { "refraction".to_owned() } else { format!("refraction, {}", unused.join(" and ")) };
@@ -498,6 +508,7 @@ mod tests {
             line_of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),
             line_of(Note::InsideOut { objects: objects(3) }, "3 objects, first `hare`: the triangles run clockwise"),
             line_of(Note::BackNotDrawn { objects: objects(1) }, "doubleSided"),
+            line_of(Note::NoArea { objects: objects(2) }, "2 objects, first `hare`: no triangle has an area"),
             line_of(
                 Note::ThinWall { objects: objects(1), unused: vec!["absorption", "dispersion"] },
                 "refraction, absorption and dispersion;",

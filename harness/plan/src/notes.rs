@@ -64,6 +64,9 @@ struct Case<'a> {
 impl Case<'_> {
     fn notes(&self, around: DVec3) -> Vec<Note> {
         let objects = Objects { first: self.object.name.clone(), count: 1 };
+        if !self.object.mesh.indices.is_empty() && !self.object.mesh.has_area() {
+            return vec![Note::NoArea { objects }];
+        }
         let rung = self.rung;
         let mut notes = Vec::new();
         let asked = self.request.rung_of(self.object);

@@ -20,6 +20,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::camera::Camera;
+use super::lacking::Matter;
 use super::object::vertices;
 use super::{Object, Opening, Scene, SceneError};
 
@@ -40,7 +41,6 @@ mod head;
 mod instances;
 mod json;
 mod kind;
-mod lacking;
 mod light_node;
 mod limits;
 mod material;
@@ -129,10 +129,11 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>, opening: &Opening) -> Result<S
     let mut budget = budget::Budget::new();
     let textures = texture::Textures::new(&root, json, &buffers, base);
     let mut materials = material::Materials::new(&root, textures);
-    let mut objects: Vec<Object> = Vec::new();
+    let mut bodies = Vec::new();
     for node in &shown.nodes {
-        primitive::add_objects(&root, &buffers, node, &mut materials, &mut budget, &mut objects)?;
+        primitive::add_objects(&root, &buffers, node, &mut materials, &mut budget, &mut bodies)?;
     }
+    let (of_bodies, objects): (Vec<Matter>, Vec<Object>) = bodies.into_iter().unzip();
     if objects.iter().all(|object| object.mesh.indices.is_empty()) {
         return Err(GltfError::NoTriangles);
     }
@@ -144,7 +145,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>, opening: &Opening) -> Result<S
         }
     };
     let (lights, light_radii) = light_node::lights(&root, &shown.nodes)?.into_iter().unzip();
-    let lacking = survey::lacking(&root, &shown.nodes, &materials, opening);
+    let lacking = survey::lacking(&root, &shown.nodes, &materials, of_bodies, opening);
     Ok(Scene { name: shown.name, objects, lights, light_radii, camera, lacking })
 }
 

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use glam::Vec3;
-
+use crate::material::Metal;
 use crate::{Object, Preset, Scene};
 
+mod color;
 mod cut;
 mod words;
 
@@ -14,24 +14,24 @@ use words::Words;
 
 /// Least metallicFactor of a metal.
 const METALLIC: f32 = 0.5;
-/// Least share of its brightest part by which a colour is one: less is grey.
-const SATURATION: f32 = 0.5;
 
 /// What a body looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
     /// A clear stone, with the name of its preset.
     Stone(&'static str),
-    /// A metal, with the name of the preset that it would have.
-    Metal(&'static str),
+    /// A metal.
+    Metal(Metal),
 }
 
 impl Look {
     /// Returns the preset that makes a body what it looks like; `None` if there is none of that name.
     #[must_use]
     pub fn preset(self) -> Option<&'static Preset> {
-        let (Self::Stone(name) | Self::Metal(name)) = self;
-        Preset::named(name)
+        Preset::named(match self {
+            Self::Stone(name) => name,
+            Self::Metal(metal) => metal.name(),
+        })
     }
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for Look {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stone(name) => write!(f, "a stone, {name}"),
-            Self::Metal(name) => write!(f, "a metal, {name}"),
+            Self::Metal(metal) => write!(f, "a metal, {}", metal.name()),
         }
     }
 }
@@ -85,8 +85,8 @@ impl fmt::Display for Guess {
 /// Returns what the bodies of a scene look like that are marked as neither clear with an inside nor scattering, but for those
 /// that are `given` a material. Bodies that look like nothing in particular are left out.
 ///
-/// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex, with flat
-/// facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
+/// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex or nearly,
+/// with flat facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
 #[must_use]
 pub fn guesses(scene: &Scene, given: impl Fn(usize) -> bool) -> Vec<Guess> {
     let looks: Vec<Option<(Look, Vec<String>)>> = scene
@@ -142,7 +142,7 @@ fn look(object: &Object) -> Option<(Look, Vec<String>)> {
     let is_named_metal = words.metal.is_some() && words.stone.is_none();
     if !is_named_metal {
         let cut = Cut::of(object.shape());
-        let by_name = words.stone.as_ref().filter(|_| cut.is_closed() && (cut.is_faceted() || cut.is_convex()));
+        let by_name = words.stone.as_ref().filter(|_| cut.is_closed() && (cut.is_faceted() || cut.is_nearly_convex()));
         if by_name.is_some() || cut.is_stone() {
             let name = by_name.map(|(word, _)| says(word));
             let how = match () {
@@ -150,11 +150,12 @@ fn look(object: &Object) -> Option<(Look, Vec<String>)> {
                 () if material.coverage.is_some() => Some("a blend".to_owned()),
                 () => None,
             };
-            let preset = words.stone.as_ref().and_then(|(_, preset)| *preset).unwrap_or_else(|| of_color(object));
+            let preset =
+                words.stone.as_ref().and_then(|(_, preset)| *preset).unwrap_or_else(|| color::stone_of(object));
             return Some((Look::Stone(preset), name.into_iter().chain([cut.to_string()]).chain(how).collect()));
         }
     }
-    let (word, name) = words.metal.map_or((None, None), |(word, name)| (Some(word), Some(name)));
+    let (word, metal) = words.metal.map_or((None, None), |(word, metal)| (Some(word), metal));
     // A short word that means something else in other languages counts with the factor alone.
     let is_sure = word.as_ref().is_some_and(|word| !words::is_ambiguous(word));
     if !material.is_opaque() || !(is_metallic || is_sure) {
@@ -162,39 +163,8 @@ fn look(object: &Object) -> Option<(Look, Vec<String>)> {
     }
     let evidence = word.map(|word| says(&word)).into_iter();
     let factor = is_metallic.then(|| format!("metallicFactor {}", material.metallic));
-    let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| metal_of_color(material.base_color));
-    Some((Look::Metal(name), evidence.chain(factor).collect()))
-}
-
-/// Returns the preset of a stone's colour, which its base colour or its attenuation tells.
-fn of_color(object: &Object) -> &'static str {
-    let material = &object.material;
-    let color = material.base_color * if material.absorbs() { material.attenuation_color } else { Vec3::ONE };
-    let [red, green, blue] = color.to_array();
-    let most = color.max_element();
-    if most <= 0.0 || most - color.min_element() < SATURATION * most {
-        return "diamond";
-    }
-    // Yellow, pink and turquoise stones have no preset.
-    let is_alone = |part: f32, others: [f32; 2]| others.iter().all(|other| *other <= (1.0 - SATURATION) * part);
-    match () {
-        () if is_alone(red, [green, blue]) => "ruby",
-        () if is_alone(green, [red, blue]) => "emerald",
-        () if is_alone(blue, [red, green]) => "sapphire",
-        () => "diamond",
-    }
-}
-
-/// Returns the metal of a colour, linear RGB: gold and copper have less than half as much blue as red, copper less green as
-/// well, and rose gold is paler.
-fn metal_of_color(color: Vec3) -> &'static str {
-    let [red, green, blue] = color.to_array();
-    match () {
-        () if blue < 0.5 * red && green < 0.6 * red => "copper",
-        () if blue < 0.5 * red => "gold",
-        () if blue < 0.85 * red && green < 0.85 * red => "rose gold",
-        () => "silver",
-    }
+    let metal = metal.unwrap_or_else(|| color::nearest_metal(material.base_color));
+    Some((Look::Metal(metal), evidence.chain(factor).collect()))
 }
 
 #[cfg(test)]

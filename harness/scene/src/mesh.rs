@@ -156,6 +156,17 @@ impl Mesh {
         self.indices.len() / 3
     }
 
+    /// Whether a triangle has an area. None has in a body that its node scales by 0.
+    #[must_use]
+    pub fn has_area(&self) -> bool {
+        // In f64, which loses no square of an f32.
+        let across = |corners: [Vec3; 3]| {
+            let [a, b, c] = corners.map(Vec3::as_dvec3);
+            (b - a).cross(c - a)
+        };
+        self.triangles().any(|corners| across(corners) != DVec3::ZERO)
+    }
+
     /// Returns the corners of each triangle, in winding order. A triangle with an index past the
     /// end of `positions` is left out.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {

@@ -2,7 +2,7 @@
 
 use crate::camera::direction;
 use crate::object::vertices;
-use crate::{Bounds, Camera, Light, Object};
+use crate::{Bounds, Camera, Lacking, Light, Object};
 
 /// Bodies, lights and a camera.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Scene {
     /// Camera that looks at the bodies.
     pub camera: Camera,
     /// Features that the file asks for and this renderer does not draw, each listed once.
-    pub lacking: Vec<String>,
+    pub lacking: Lacking,
 }
 
 /// Half the angle under which the sun is seen from the earth, in radians.

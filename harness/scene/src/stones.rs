@@ -46,8 +46,9 @@ type Which = (usize, usize);
 
 impl Scene {
     /// Mends the clear bodies that have an inside, parts those of several closed shells, and joins those of one shape and
-    /// material to copies. A body stays as it is if it has copies already, or if its mesh is too large; one at which there was
-    /// nothing to mend, part or join keeps its very mesh. Those that are `apart` are joined to no body of another name.
+    /// material to copies. A body stays as it is if it has copies already, or if its mesh is too large or without area; one at
+    /// which there was nothing to mend, part or join keeps its very mesh. Those that are `apart` are joined to no body of another
+    /// name.
     ///
     /// Where a body becomes several, they are named `NAME stones 1`, or `NAME stone 1` if it has no copies, and so on, in the
     /// order of their first triangles; what is not closed keeps the name.
@@ -57,7 +58,8 @@ impl Scene {
         let mut parted: Vec<Parted> = Vec::new();
         for (origin, object) in self.objects.iter().enumerate() {
             let is_stone = object.material.has_clear_inside() && object.copies.is_none();
-            if !is_stone || object.mesh.indices.is_empty() {
+            // Nothing would be left of one without an area, not even its name.
+            if !is_stone || !object.mesh.has_area() {
                 continue;
             }
             match Shells::of(&object.mesh) {

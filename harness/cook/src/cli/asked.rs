@@ -12,7 +12,7 @@ use lapidary_scene::normals::Normals;
 use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
 use std::path::PathBuf;
 
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(super) struct Asked {
     #[arg(help = format!("{}, or a glTF 2.0 file", scene::names()))]
     pub(super) scene: String,
@@ -41,7 +41,7 @@ pub(super) struct Asked {
     /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
     /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
-    quality: Option<Quality>,
+    pub(super) quality: Option<Quality>,
     /// Which normals refract in clear bodies: those of the file, between a triangle's corners, or those of
     /// the facets. The file's by default, unless its facets are those of a cut stone.
     #[arg(long, value_name = "WHICH", value_parser = parse_normals)]
@@ -51,13 +51,13 @@ pub(super) struct Asked {
     /// clear bodies show the discs of lights. cdrf, optical_path, diffusion: draw all scattering materials by this
     /// technique, whatever their thickness relative to the mean free path.
     #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, DIFFUSION, SHADOW, HALF_SPACE, LIGHT])]
-    with: Vec<String>,
+    pub(super) with: Vec<String>,
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
-    without: Vec<Effect>,
+    pub(super) without: Vec<Effect>,
     /// Latitude-longitude .exr or .hdr image; the procedural studio by default.
     #[arg(long, value_name = "FILE")]
-    environment: Option<PathBuf>,
+    pub(super) environment: Option<PathBuf>,
     /// Camera of the file: its name, its node's name, or its number; the first one by default.
     #[arg(long, value_name = "NAME|N")]
     pub(super) camera: Option<String>,
@@ -73,7 +73,7 @@ const SHADOW: &str = "shadow";
 const HALF_SPACE: &str = "half_space";
 const LIGHT: &str = "light";
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
     let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
     parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
@@ -84,7 +84,7 @@ fn parse_time(text: &str) -> Result<f32, String> {
     time.ok_or_else(|| "expected seconds of at least 0, such as 1.5".to_owned())
 }
 
-fn parse_quality(text: &str) -> Result<Quality, String> {
+pub(super) fn parse_quality(text: &str) -> Result<Quality, String> {
     named("quality", text, Quality::ALL, Quality::name)
 }
 

@@ -224,7 +224,7 @@ impl Drawn {
     /// Opens the scene, and makes the settings and the environment's warnings. `others` are further
     /// options that were given.
     pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
-        let mut opened = self.asked.open(false)?;
+        let mut opened = self.asked.open()?;
         if let Some((polar, azimuth)) = self.from {
             opened.scene = opened.scene.seen_from(polar, azimuth);
         }
@@ -342,7 +342,7 @@ const MOST_LINES: usize = 20;
 
 /// Prints warnings on stderr, the gravest first, and what of the scene's file is not drawn.
 pub(super) fn tell(notes: &[Note], scene: &Scene) {
-    for line in said(notes, &scene.lacking) {
+    for line in said(notes, &scene.lacking.clauses()) {
         output::remark(&line);
     }
 }

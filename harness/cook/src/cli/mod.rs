@@ -4,6 +4,7 @@ mod asked;
 mod check;
 mod compare;
 mod completions;
+mod corpus;
 mod drawn;
 mod frame;
 mod list;
@@ -44,6 +45,7 @@ enum Command {
     Render(render::Arguments),
     Scene(scene::Arguments),
     Compare(compare::Arguments),
+    Corpus(corpus::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -60,6 +62,7 @@ pub(crate) fn run() -> ExitCode {
             Command::Render(arguments) => render::run(&context, &arguments),
             Command::Scene(arguments) => scene::run(&arguments),
             Command::Compare(arguments) => compare::run(&arguments),
+            Command::Corpus(arguments) => corpus::run(&context, &arguments),
             Command::Completions(arguments) => completions::run(&arguments, Arguments::command()),
         }
     })

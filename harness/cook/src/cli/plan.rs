@@ -154,7 +154,7 @@ impl<'a> Document<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let opened = arguments.asked.open(true)?;
+    let opened = arguments.asked.open_with_hints()?;
     let (settings, more) = arguments.asked.settings(&opened)?;
     let mut plan = Plan::of(&opened.scene, &settings)?;
     plan.notes.splice(..0, opened.notes.into_iter().chain(more));

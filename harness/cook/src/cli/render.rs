@@ -157,7 +157,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let (files, scenes): (Vec<PathBuf>, Box<dyn Iterator<Item = Scene>>) = match arguments.turntable {
         None => (vec![out], Box::new(std::iter::once(scene))),
         Some(count) => {
-            let files = (0..count).map(|number| numbered(&out, number, format)).collect();
+            let files = (0..count).map(|number| numbered(&out, number, count, format)).collect();
             (files, Box::new(scene.turntable(count, size)))
         }
     };
@@ -185,10 +185,12 @@ fn check_output<'a>(out: &Path, inputs: impl Iterator<Item = &'a Path>) -> Resul
     Ok(lapidary_files::check_writable(out)?)
 }
 
-/// Returns the file of one picture of several: `ring-007.png` for `ring.png`.
-fn numbered(out: &Path, number: u32, format: Format) -> PathBuf {
+/// Returns the file of one picture of `count`, whose names sort in their order: `ring-007.png` for `ring.png`, of a thousand
+/// `ring-0007.png`.
+fn numbered(out: &Path, number: u32, count: u32, format: Format) -> PathBuf {
+    let width = count.to_string().len().max(3);
     let mut name = out.file_stem().unwrap_or_default().to_owned();
-    name.push(format!("-{number:03}.{}", format.ending()));
+    name.push(format!("-{number:0width$}.{}", format.ending()));
     out.with_file_name(name)
 }
 
@@ -216,4 +218,18 @@ fn tell_quality(picture: &Picture) -> Result<(), Failure> {
         ))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_of_a_turn_sort_by_their_names() {
+        let name = |number, count| numbered(Path::new("a/ring.png"), number, count, Format::Png);
+        assert_eq!(name(7, 36), Path::new("a/ring-007.png"));
+        assert_eq!(name(998, 999), Path::new("a/ring-998.png"));
+        assert_eq!(name(7, 1000), Path::new("a/ring-0007.png"));
+        assert_eq!(name(3599, 3600), Path::new("a/ring-3599.png"));
+    }
 }

@@ -172,7 +172,6 @@ const SCENES: &[Row] = &[
     ("{}/dark.gltf --out {}/out.png", One, &["dark.gltf: ", "its intensity is -1.0", "at least 0"]),
     ("{}/half.gltf --out {}/out.png", One, &["half.gltf: ", "material 0 \"wax\"", "scattering but no absorption"]),
     ("{}/sigma.gltf --out {}/out.png", One, &["sigma.gltf: ", "material 0 \"wax\"", "sigma0 is [1,null,1]"]),
-    ("{}/index_of_refraction.gltf --out {}/out.png", One, &["material 0 \"wax\": its ior is -1.0", "between 1 and 4"]),
     ("{}/null.gltf --out {}/out.png", One, &["null.gltf: ", "material 0 \"wax\": its ior is null", "a number"]),
     ("{}/thickness.gltf --out {}/out.png", One, &["thickness.gltf: ", "its thicknessFactor is -1.0", "at least 0"]),
     ("{}/attenuation.gltf --out {}/out.png", One, &["attenuation.gltf: ", "its attenuationDistance is 0.0", "above 0"]),
@@ -230,6 +229,13 @@ const COMPARE: &[Row] = &[
     ("{}/none.exr {}/text.glb", One, &["none.exr: ", "cannot be read"]),
     ("{}/text.glb {}/text.glb", One, &["text.glb: ", "cannot be read", ".png or .exr"]),
     ("{}/text.glb", One, &["<PICTURE>"]),
+];
+
+const CORPUS: &[Row] = &[
+    ("{}/none", One, &["none: ", "name a folder that can be read"]),
+    ("{}/text.glb", One, &["text.glb: ", "name a folder that can be read"]),
+    ("{} --environment {}/none.exr", One, &["none.exr: ", "cannot be read"]),
+    ("{} --quality better", One, &["better", "`best`"]),
 ];
 
 const CHECK: &[Row] = &[
@@ -351,6 +357,14 @@ const OTHERS: &[Row] = &[
 #[test]
 fn pictures_that_cannot_be_compared_are_refused() {
     all_refused("compare", COMPARE);
+}
+
+#[test]
+fn a_corpus_without_files_or_with_bad_settings_is_refused() {
+    all_refused("corpus", CORPUS);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let answer = cook(folder.path(), &["corpus", "."]);
+    assert!(answer.code == Some(2) && answer.stderr.contains("has no .glb or .gltf file"), "{answer:?}");
 }
 
 #[test]
@@ -489,7 +503,6 @@ const BAD_MEMBERS: &[(&str, Change)] = &[
     ("dark.gltf", |d| add_light(d, json!({"type": "point", "intensity": -1}))),
     ("half.gltf", |d| add_wax(d, json!({"scattering": [1, 1, 1]}))),
     ("sigma.gltf", |d| add_wax(d, json!({"sigma0": [1, null, 1]}))),
-    ("index_of_refraction.gltf", |d| extend_wax(d, json!({"KHR_materials_ior": {"ior": -1}}))),
     ("null.gltf", |d| extend_wax(d, json!({"KHR_materials_ior": {"ior": null}}))),
     ("thickness.gltf", |d| extend_wax(d, json!({"KHR_materials_volume": {"thicknessFactor": -1}}))),
     ("attenuation.gltf", |d| extend_wax(d, json!({"KHR_materials_volume": {"attenuationDistance": 0}}))),

@@ -20,8 +20,7 @@ fn without_arguments_it_prints_help() {
     let answer = cook(folder().path(), &[] as &[&str]);
     assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
     let help = answer.stdout + &answer.stderr;
-    for command in ["check", "list", "copy", "plan", "frame", "render", "scene", "compare", "completions", "--adapter"]
-    {
+    for command in ["check", "list", "copy", "plan", "frame", "render", "scene", "compare", "corpus", "--adapter"] {
         assert!(help.contains(command), "{command}: {help}");
     }
     let asked = succeeds(folder().path(), &["--help"]);
@@ -42,7 +41,7 @@ fn a_command_of_the_repository_is_told_from_an_unknown_one() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "compare"] {
+    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "corpus"] {
         let help = succeeds(folder().path(), &[command, "--help"]).stdout;
         assert!(help.contains("Example") && help.contains(&format!("./cook {command}")), "{help}");
     }
@@ -316,6 +315,60 @@ fn jewellery_makes_white_plastic_stones() {
     assert_eq!(instances.expect("a row")["reason"], "2 copies of one shape");
     // What is named keeps its material.
     assert_eq!(plan(&["--jewellery", "--material", "node=ruby"])["objects"][0]["material"], "ruby");
+}
+
+/// `ior` 0 of a clear body is said, unless a preset takes the place of its material, as is what else that lacks.
+#[test]
+fn what_a_preset_replaces_is_not_told() {
+    let folder = folder();
+    let written = glb::write(&Scene::named("ruby").expect("built in")).expect("glTF");
+    let length = u32::from_le_bytes([12, 13, 14, 15].map(|place| written[place])) as usize;
+    let mut document: Value = serde_json::from_slice(&written[20..20 + length]).expect("JSON");
+    document["materials"][0]["extensions"]["KHR_materials_ior"] = serde_json::json!({"ior": 0});
+    document["materials"][0]["extras"]["lapidary"].as_object_mut().expect("extras").remove("sellmeier");
+    document["materials"][0]["emissiveFactor"] = serde_json::json!([1, 1, 1]);
+    let file = glb::container(document.to_string().as_bytes(), &written[28 + length..]).expect("glTF");
+    std::fs::write(folder.path().join("gem.glb"), file).expect("written");
+    let lacking = |more: &[&str]| -> Value {
+        let answer = succeeds(folder.path(), &[&["plan", "gem.glb", "--json"], more].concat());
+        serde_json::from_str::<Value>(&answer.stdout).expect("JSON")["lacking"].clone()
+    };
+    let usual = lacking(&[]).to_string();
+    assert!(usual.contains("`ior` 0.0 of material") && usual.contains("emissiveFactor"), "{usual}");
+    assert_eq!(lacking(&["--material", "sapphire"]), serde_json::json!([]));
+}
+
+/// A row for each file, the others after one that cannot be read; the table as JSON and the pictures in a folder.
+#[test]
+fn a_corpus_has_a_row_for_each_file() {
+    let folder = folder();
+    let inside = folder.path().join("rings/more");
+    std::fs::create_dir_all(&inside).expect("made");
+    let write = |scene: &str, file: &str| {
+        let written = glb::write(&Scene::named(scene).expect("built in")).expect("glTF");
+        std::fs::write(folder.path().join("rings").join(file), written).expect("written");
+    };
+    write("brilliant", "stone.glb");
+    write("jade", "more/ball.glb");
+    let all = ["corpus", "rings", "--out", "pictures", "--size", "32x32"];
+    let answer = succeeds(folder.path(), &all);
+    let lines: Vec<&str> = answer.stdout.lines().collect();
+    let [head, ball, stone] = lines[..] else { panic!("{answer:?}") };
+    assert!(head.split_whitespace().eq(["file", "stones", "walked", "convex", "lacking", "seconds"]), "{head}");
+    assert!(ball.starts_with("more/ball.glb") && ball.ends_with("more/ball.glb.png"), "{ball}");
+    assert_eq!(stone.split_whitespace().take(5).collect::<Vec<_>>(), ["stone.glb", "1", "1", "1.00", "0"], "{stone}");
+    for picture in ["stone.glb.png", "more/ball.glb.png"] {
+        assert!(folder.path().join("pictures").join(picture).is_file(), "{picture}");
+    }
+    std::fs::write(inside.join("bad.gltf"), "{").expect("written");
+    let answer = cook(folder.path(), &all);
+    assert_eq!(answer.code, Some(1), "{answer:?}");
+    assert!(answer.stderr.contains("1 of 3 files could not be read or drawn"), "{answer:?}");
+    let table = std::fs::read_to_string(folder.path().join("pictures/corpus.json")).expect("a table");
+    let rows = json(&table);
+    let errors: Vec<bool> = rows.iter().map(|row| row["error"].is_string()).collect();
+    assert_eq!(errors, [true, false, false], "{table}");
+    assert_eq!((&rows[2]["found"]["walked"], &rows[2]["picture"]), (&1.into(), &"stone.glb.png".into()), "{table}");
 }
 
 /// A preset is the material of the scene that is named after it, down to the picture.

@@ -7,6 +7,7 @@ pub(super) fn add(notes: &mut Vec<Note>, note: Note) {
     let known = notes.iter_mut().find_map(|known| match (known, &note) {
         (Note::NotSolid { objects, rung, .. }, Note::NotSolid { rung: other, .. }) if rung == other => Some(objects),
         (Note::InsideOut { objects }, Note::InsideOut { .. })
+        | (Note::NoArea { objects }, Note::NoArea { .. })
         | (Note::BackNotDrawn { objects }, Note::BackNotDrawn { .. })
         | (Note::Black { objects, .. }, Note::Black { .. })
         | (Note::ClipsToWhite { objects, .. }, Note::ClipsToWhite { .. }) => Some(objects),

@@ -57,6 +57,28 @@ fn little_is_said_of_the_built_ins() {
     }
 }
 
+/// Of a body that its node makes a point or a line nothing else is said: neither its thickness nor its mesh is at fault.
+#[test]
+fn bodies_without_area_are_named_whatever_they_are_made_of() {
+    let scaled = |scale: Vec3, change: fn(&mut Material)| {
+        changed("brilliant", |object| {
+            change(&mut object.material);
+            object.mesh.positions.iter_mut().for_each(|position| *position *= scale);
+        })
+    };
+    for scale in [Vec3::ZERO, Vec3::X] {
+        let ways: [fn(&mut Material); 3] =
+            [|_| (), |material| material.thickness = 0.0, |material| material.transmission = 0.0];
+        for way in ways {
+            let said = said(&scaled(scale, way), &usual());
+            assert!(matches!(&said[..], [note] if note.contains("no triangle has an area")), "{scale}: {said:?}");
+        }
+    }
+    // However small, a body is one.
+    let small = said(&scaled(Vec3::splat(1e-20), |_| ()), &usual());
+    assert!(small.iter().all(|note| !note.contains("area")), "{small:?}");
+}
+
 #[test]
 fn meshes_that_are_no_solids_are_named_where_a_rung_needs_one() {
     let open = changed("ruby", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));

@@ -69,7 +69,7 @@ impl Plan {
             objects,
             listing: Listing::of(&frame),
             frame,
-            lacking: scene.lacking.clone(),
+            lacking: scene.lacking.clauses(),
         })
     }
 

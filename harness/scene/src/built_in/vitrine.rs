@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 
 use super::framing::VERTICAL_FOV;
 use super::{materials, stone, translucent};
-use crate::{Camera, Density, Dispersion, Light, Material, Medium, Object, Scene, SceneError, gltf};
+use crate::{Camera, Density, Dispersion, Lacking, Light, Material, Medium, Object, Scene, SceneError, gltf};
 use lapidary_veins::VeinsPattern;
 
 /// The meshes, made by the program in `harness/assets/`.
@@ -31,7 +31,7 @@ pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
         lights: lights(),
         light_radii: Vec::new(),
         camera: camera(),
-        lacking: Vec::new(),
+        lacking: Lacking::default(),
     })
 }
 

@@ -10,10 +10,22 @@ use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, item};
 use super::kind::{Kind, ROTATIONS, SCALARS, VECTORS};
+use super::nodes::has_no_direction;
+
+/// Whether an animation of the file moves a node. Weights of morph targets, which are not drawn, move none.
+pub(super) fn moves_nodes(root: &Root) -> bool {
+    let mut channels = root.animations.iter().flat_map(|animation| &animation.channels);
+    channels.any(|channel| channel.target.path != Checked::Valid(Property::MorphTargetWeights))
+}
 
 /// Gives the nodes the translations, rotations and scales that all animations have at `time`, in seconds. Before its first key and
-/// after its last one an animation keeps that key's value. Of several that move one property of a node the last one counts.
+/// after its last one an animation keeps that key's value. Of several that move one property of a node the last one counts. A file
+/// without animations is refused: the time would be believed to matter.
 pub(super) fn pose(root: &mut Root, buffers: &Buffers<'_>, time: f32) -> Result<(), GltfError> {
+    if root.animations.is_empty() {
+        let problem = "it has no animation, so that a time (--time) changes nothing; leave it out";
+        return Err(GltfError::part("the file".to_owned(), problem));
+    }
     let mut moved = Vec::new();
     for (number, animation) in root.animations.iter().enumerate() {
         let part = || designation("animation", number, animation.name.as_deref());
@@ -26,9 +38,12 @@ pub(super) fn pose(root: &mut Root, buffers: &Buffers<'_>, time: f32) -> Result<
                 continue;
             }
             let node = channel.target.node.value();
-            item(&root.nodes, "node", node, part)?;
+            let moves = item(&root.nodes, "node", node, part)?;
             let sampler = item(&animation.samplers, "sampler", channel.sampler.value(), part)?;
-            moved.push((node, property, value(root, buffers, sampler, property, time, &part())?));
+            let value = value(root, buffers, sampler, property, time, &part())?;
+            let name = designation("node", node, moves.name.as_deref());
+            check(value, property, time).map_err(|problem| GltfError::part(format!("{}, {name}", part()), problem))?;
+            moved.push((node, property, value));
         }
     }
     for (index, property, value) in moved {
@@ -45,6 +60,20 @@ pub(super) fn pose(root: &mut Root, buffers: &Buffers<'_>, time: f32) -> Result<
         }
     }
     Ok(())
+}
+
+/// Refuses a value that is no place, turn or size.
+fn check(value: Vec4, property: Property, time: f32) -> Result<(), String> {
+    let rotates = property == Property::Rotation;
+    if value.is_finite() && !(rotates && has_no_direction(value.to_array())) {
+        return Ok(());
+    }
+    let (what, fault) = match property {
+        Property::Rotation => ("rotation", "0, 0, 0, 0 or not finite"),
+        Property::Scale => ("scale", "not finite"),
+        Property::Translation | Property::MorphTargetWeights => ("translation", "not finite"),
+    };
+    Err(format!("at {time} s its {what} is undefined, since a key is {fault}; mend the keys"))
 }
 
 /// Returns a sampler's value: a vector in its first three components, or a quaternion.

@@ -183,9 +183,7 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     volume(Extension::of(all, "KHR_materials_volume")?, &mut material)?;
 
     if let Some(ior) = ior {
-        // A vendor's mark gives an index of its own.
-        let is_clear = material.transmission > 0.0 && Diamond::of(all)?.is_none();
-        material.ior = if is_clear || ior < 0.0 { index(ior)? } else { nearest_index(ior) };
+        material.ior = nearest_index(ior);
     }
     let dispersion = Extension::of(all, "KHR_materials_dispersion")?.number("dispersion")?;
     if let Some(dispersion) = dispersion {
@@ -295,25 +293,7 @@ fn exclusive(all: Option<&Map<String, Value>>) -> Result<(), String> {
     }
 }
 
-/// Returns the index nearest to that of a body through which no light goes straight: there it concerns reflection alone. glTF's 0
-/// stands for a surface that reflects all light.
+/// Returns the nearest index that can be drawn. glTF's 0 stands for a surface that reflects all light, as an infinite index does.
 pub(super) fn nearest_index(ior: f64) -> f32 {
     if ior == 0.0 { Material::LARGEST_INDEX } else { (ior as f32).clamp(1.0, Material::LARGEST_INDEX) }
-}
-
-fn index(ior: f64) -> Result<f32, String> {
-    if ior == 0.0 {
-        return Err("its ior is 0, glTF's sign for a surface that reflects like a metal; a stone needs a real \
-                    refractive index, at least 1"
-            .to_owned());
-    }
-    let single = ior as f32;
-    if (1.0..=Material::LARGEST_INDEX).contains(&single) {
-        Ok(single)
-    } else {
-        Err(format!(
-            "its ior is {ior:?}, but a stone's refractive index lies between 1 and {}",
-            Material::LARGEST_INDEX
-        ))
-    }
 }

@@ -20,18 +20,20 @@ use super::limits::MAX_COORDINATE;
 use super::material::Materials;
 use super::nodes::ShownNode;
 use crate::copies::{Copies, MOST_JOINED};
+use crate::lacking::Matter;
 use crate::normals::{Averaging, Cofactors, shared_normals};
 use crate::{Mesh, Object};
 
 /// Adds an object for each material of the triangle primitives that `node` shows: exporters part one body's triangles over
-/// several. All instances of a primitive form one mesh, or several if one would be too large for a device.
+/// several. All instances of a primitive form one mesh, or several if one would be too large for a device. Each object comes with
+/// its material's number.
 pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
     node: &ShownNode<'_>,
     materials: &mut Materials<'_>,
     budget: &mut Budget,
-    objects: &mut Vec<Object>,
+    objects: &mut Vec<(Matter, Object)>,
 ) -> Result<(), GltfError> {
     let Some(mesh_index) = node.node.mesh.map(|mesh| mesh.value()) else {
         return Ok(());
@@ -42,8 +44,8 @@ pub(super) fn add_objects(
     let name = name.map_or_else(|| format!("mesh {mesh_index}"), |name| excerpt(&name));
     let instances = Instances::of(root, buffers, node)?;
     let enlargement = instances.enlargement();
-    // Each with the number of its first primitive.
-    let mut found: Vec<(usize, Object)> = Vec::new();
+    // Each with the number of its first primitive, and its material's.
+    let mut found: Vec<(usize, Matter, Object)> = Vec::new();
     // The last of each material, with texture coordinates or without.
     let mut of_kind = HashMap::new();
     for (index, primitive) in mesh.primitives.iter().enumerate() {
@@ -57,10 +59,11 @@ pub(super) fn add_objects(
         let material_index = primitive.material.map(|material| material.value());
         let has_coordinates = meshes_in_world.iter().all(|(mesh, _)| !mesh.uvs.is_empty());
         let mut material = materials.get(material_index, has_coordinates, &user)?;
-        // glTF states the thickness in the mesh's space, unlike its other lengths.
+        // glTF states the thickness in the mesh's space, unlike its other lengths. A solid that is scaled to nothing is no thin
+        // wall.
         if material.thickness > 0.0 {
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
-            material.thickness = thickness.min(f32::MAX);
+            material.thickness = thickness.clamp(f32::MIN_POSITIVE, f32::MAX);
         }
         let diamond = materials.diamond(material_index);
         for (mesh, copies) in meshes_in_world {
@@ -71,19 +74,19 @@ pub(super) fn add_objects(
             let object = Object { name: name.clone(), mesh, material, copies };
             let kind = (material_index, object.mesh.uvs.is_empty());
             let other = of_kind.get(&kind).map(|place: &usize| &mut found[*place]);
-            match other.filter(|(first, other)| *first != index && are_one(other, &object)) {
-                Some((_, other)) => other.mesh.append(&object.mesh),
+            match other.filter(|(first, _, other)| *first != index && are_one(other, &object)) {
+                Some((_, _, other)) => other.mesh.append(&object.mesh),
                 None => {
                     of_kind.insert(kind, found.len());
-                    found.push((index, object));
+                    found.push((index, material_index, object));
                 }
             }
         }
     }
-    let are_parts = found.iter().any(|(index, _)| Some(index) != found.first().map(|(first, _)| first));
-    objects.extend(found.into_iter().map(|(index, object)| {
+    let are_parts = found.iter().any(|(index, ..)| Some(index) != found.first().map(|(first, ..)| first));
+    objects.extend(found.into_iter().map(|(index, material, object)| {
         let name = if are_parts { format!("{name} / {index}") } else { object.name };
-        Object { name, ..object }
+        (material, Object { name, ..object })
     }));
     Ok(())
 }

@@ -103,22 +103,42 @@ fn primitives_of_one_material_are_one_body() {
     assert_eq!(load(&[0, 1, 0]), [body("stone / 0", "gem", 2), body("stone / 1", "gold", 1)]);
 }
 
-/// An index of refraction beyond those of clear bodies concerns only what other bodies reflect.
+/// An index of refraction beyond those of clear bodies is drawn as the nearest, of clear bodies and of others.
 #[test]
-fn opaque_bodies_have_the_nearest_index() {
-    for (ior, drawn, says) in [(0.0, 4.0, "drawn as 4"), (0.5, 1.0, "drawn as 1"), (1000.0, 4.0, "drawn as 4")] {
+fn an_index_that_cannot_be_drawn_is_the_nearest_and_said() {
+    for (ior, drawn) in [(0.0, 4.0), (0.5, 1.0), (-1.0, 1.0), (5.0, 4.0), (1e39, 4.0)] {
+        for transmission in [0, 1] {
+            let scene = load_changed(|d| {
+                d["meshes"][0]["primitives"][0]["material"] = json!(0);
+                d["materials"][0] = json!({
+                    "name": "gem",
+                    "pbrMetallicRoughness": {"metallicFactor": 0},
+                    "extensions": {
+                        "KHR_materials_ior": {"ior": ior},
+                        "KHR_materials_transmission": {"transmissionFactor": transmission},
+                    },
+                });
+            });
+            let scene = scene.expect("a scene");
+            assert_eq!(scene.objects[0].material.ior, drawn);
+            let clause = format!("index of refraction: `ior` {ior:?} of material `gem` (drawn as {drawn})");
+            assert_eq!(scene.lacking.clauses(), [clause]);
+        }
+    }
+}
+
+/// A solid that its node makes flat, or a point, is no thin wall: its mesh is at fault.
+#[test]
+fn a_solid_of_scale_0_stays_a_solid() {
+    for scale in [[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]] {
         let scene = load_changed(|d| {
+            d["nodes"][0]["scale"] = json!(scale);
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
-            d["materials"][0] = json!({
-                "name": "gem",
-                "pbrMetallicRoughness": {"metallicFactor": 0},
-                "extensions": {"KHR_materials_ior": {"ior": ior}},
+            d["materials"][0]["extensions"] = json!({
+                "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 2},
             });
         });
-        let scene = scene.expect("a scene");
-        assert_eq!(scene.objects[0].material.ior, drawn);
-        let clause = format!("index of refraction: `ior` {ior:?} of material `gem` ({says})");
-        assert_eq!(scene.lacking, [clause]);
+        assert!(scene.expect("a scene").objects[0].material.has_clear_inside(), "{scale:?}");
     }
 }
 
@@ -372,7 +392,7 @@ fn ten_thousand_roots_load_as_so_many_bodies() {
         d["scenes"][0]["nodes"] = (0..10_000).collect();
     });
     let scene = scene.unwrap();
-    assert_eq!((scene.objects.len(), scene.lacking.len()), (10_000, 0));
+    assert_eq!((scene.objects.len(), scene.lacking.clauses().len()), (10_000, 0));
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec3;
 
 use crate::Mesh;
+use crate::hull::{Hull, volume};
 use crate::normals::is_smooth;
 use crate::shells::Shells;
 
@@ -17,6 +18,9 @@ const MOST_PRODUCTS: usize = 1 << 24;
 const DENT: f64 = 0.01;
 /// Share of the area whose planes no corner lies above, in a convex body.
 const CONVEX: f64 = 0.95;
+/// Share of the volume of its hull that a cut stone has which is modelled with bent facets: those that were tried have .979 and
+/// more, parts of settings .33 and less.
+const FILLED: f64 = 0.95;
 /// Share of the triangles in closed parts.
 const CLOSED: f64 = 0.9;
 /// Cosine of the angle within which normals are one direction: 2°.
@@ -33,6 +37,8 @@ pub(super) struct Cut {
     closed: f64,
     /// Least share, over the parts, of the area whose planes no corner lies above.
     convex: f64,
+    /// Least share, over the parts, of the volume of the hull: 1 for convex ones, 0 for others without a stone's number of facets.
+    filled: f64,
     /// Largest number of facets of a part.
     facets: usize,
     is_smooth: bool,
@@ -57,6 +63,7 @@ impl Cut {
         Self {
             closed,
             convex: parts.iter().map(|part| part.convex).fold(1.0, f64::min),
+            filled: parts.iter().map(|part| part.filled).fold(1.0, f64::min),
             facets: parts.iter().map(|part| part.facets).max().unwrap_or_default(),
             is_smooth: shells.solids.iter().step_by(step).any(is_smooth),
             is_prism: parts.iter().any(|part| part.is_prism),
@@ -68,33 +75,46 @@ impl Cut {
         self.is_known && self.closed >= CLOSED
     }
 
-    pub(super) fn is_convex(&self) -> bool {
+    fn is_convex(&self) -> bool {
         self.is_known && self.convex >= CONVEX
+    }
+
+    /// Whether it is convex, or would be but for bent facets.
+    pub(super) fn is_nearly_convex(&self) -> bool {
+        self.is_convex() || self.is_known && self.filled >= FILLED
     }
 
     pub(super) fn is_faceted(&self) -> bool {
         self.is_known && !self.is_smooth && self.facets <= *FACETS.end()
     }
 
-    /// Whether the shape alone is that of a cut stone.
+    /// Whether the shape alone is that of a cut stone, convex or with facets that are bent.
     pub(super) fn is_stone(&self) -> bool {
-        self.is_closed() && self.is_convex() && self.is_faceted() && FACETS.contains(&self.facets) && !self.is_prism
+        self.is_closed()
+            && self.is_nearly_convex()
+            && self.is_faceted()
+            && FACETS.contains(&self.facets)
+            && !self.is_prism
     }
 }
 
 impl fmt::Display for Cut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let convex = if self.is_convex() { "closed and convex" } else { "closed" };
-        match self.is_faceted() {
-            true => write!(f, "{convex}, {} facets", self.facets),
-            false => f.write_str(convex),
+        match () {
+            () if self.is_convex() => f.write_str("closed and convex")?,
+            () if self.is_nearly_convex() => {
+                write!(f, "closed, though not convex ({:.0} % of its hull)", (100.0 * self.filled).floor())?;
+            }
+            () => f.write_str("closed")?,
         }
+        if self.is_faceted() { write!(f, ", {} facets", self.facets) } else { Ok(()) }
     }
 }
 
 /// A closed part.
 struct Part {
     convex: f64,
+    filled: f64,
     facets: usize,
     is_prism: bool,
 }
@@ -130,12 +150,21 @@ impl Part {
         // What is left of slivers is no facet.
         normals.retain(|(_, size)| *size > 1e-5 * area);
         let directions: Vec<DVec3> = normals.iter().map(|(normal, _)| *normal).collect();
-        Self {
-            convex: below / f64::max(looked_at, f64::MIN_POSITIVE),
-            facets: directions.len(),
-            is_prism: is_prism(&directions),
-        }
+        let convex = below / f64::max(looked_at, f64::MIN_POSITIVE);
+        let filled = match directions.len() {
+            _ if convex >= CONVEX => 1.0,
+            facets if FACETS.contains(&facets) => filled(mesh),
+            _ => 0.0,
+        };
+        Self { convex, filled, facets: directions.len(), is_prism: is_prism(&directions) }
     }
+}
+
+/// Returns the share of the volume of its hull that a closed mesh has; 0 if that has none.
+fn filled(mesh: &Mesh) -> f64 {
+    let triangles = mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| corners[k] as usize));
+    let own = volume(&mesh.positions, triangles).0;
+    Hull::of(&mesh.positions).map_or(0.0, |hull| own / volume(&mesh.positions, hull.triangles).0)
 }
 
 /// Whether normals are all along an axis, which is one of the first of them or across two, or across it.

@@ -1,5 +1,7 @@
 //! Words in names of nodes and materials that say what a body is, in several languages.
 
+use crate::material::Metal;
+
 /// Words for stones, each with its preset if it says which.
 const STONES: [(&[&str], Option<&str>); 8] = [
     (
@@ -24,7 +26,7 @@ const STONES: [(&[&str], Option<&str>); 8] = [
             "диамант",
             "钻石",
             "鑽石",
-            "ダイヤモンド",
+            "タイヤモント",
         ],
         Some("diamond"),
     ),
@@ -104,14 +106,15 @@ const STONES: [(&[&str], Option<&str>); 8] = [
     ),
 ];
 
-/// Words for metals, each with the name of its preset; the last ones name none.
-const METALS: [(&[&str], &str); 8] = [
+/// Words for metals, each with the metal; the last ones name none.
+const METALS: [(&[&str], Option<Metal>); 9] = [
     (
         &["gold", "golden", "oro", "ouro", "or", "zloto", "zloty", "goud", "guld", "altin", "kulta", "золото", "金"],
-        "gold",
+        Some(Metal::Gold),
     ),
-    (&["rosegold", "rotgold", "rose", "rosa"], "rose gold"),
-    (&["whitegold", "weissgold"], "white gold"),
+    (&["yellowgold", "gelbgold"], Some(Metal::YellowGold)),
+    (&["rosegold", "rotgold", "rose", "rosa"], Some(Metal::RoseGold)),
+    (&["whitegold", "weissgold"], Some(Metal::WhiteGold)),
     (
         &[
             "silver",
@@ -128,12 +131,12 @@ const METALS: [(&[&str], &str); 8] = [
             "серебро",
             "银",
         ],
-        "silver",
+        Some(Metal::Silver),
     ),
-    (&["platinum", "platin", "platine", "platino", "platyna", "platina", "платина", "铂"], "platinum"),
-    (&["copper", "kupfer", "cuivre", "rame", "cobre", "miedz", "koper", "медь", "铜"], "copper"),
-    (&["steel", "stahl", "acier", "acciaio", "acero", "stal", "staal", "сталь", "钢"], "steel"),
-    (&["metal", "metall", "metallo", "metaal", "prong", "prongs", "металл", "金属"], ""),
+    (&["platinum", "platin", "platine", "platino", "platyna", "platina", "платина", "铂"], Some(Metal::Platinum)),
+    (&["copper", "kupfer", "cuivre", "rame", "cobre", "miedz", "koper", "медь", "铜"], Some(Metal::Copper)),
+    (&["steel", "stahl", "acier", "acciaio", "acero", "stal", "staal", "сталь", "钢"], Some(Metal::Steel)),
+    (&["metal", "metall", "metallo", "metaal", "prong", "prongs", "металл", "金属"], None),
 ];
 
 /// Words that mean something else in other languages or as a part of a phrase, or that name a part rather than its matter.
@@ -149,8 +152,8 @@ pub(super) fn is_ambiguous(word: &str) -> bool {
 pub(super) struct Words {
     /// A word for a stone, and its preset if it says which; that one if there are several.
     pub(super) stone: Option<(String, Option<&'static str>)>,
-    /// A word for a metal, and its preset's name, which is empty if the word says none.
-    pub(super) metal: Option<(String, &'static str)>,
+    /// A word for a metal, and the metal if the word says which.
+    pub(super) metal: Option<(String, Option<Metal>)>,
 }
 
 impl Words {
@@ -172,23 +175,24 @@ impl Words {
     }
 }
 
+/// Words for the colour of an alloy of gold.
+const ALLOYS: [(&[&str], Metal); 3] = [
+    (&["rose", "rosa", "pink", "red", "rot", "rouge", "rosso"], Metal::RoseGold),
+    (&["white", "weiss", "blanc", "bianco", "blanco", "biale"], Metal::WhiteGold),
+    (&["yellow", "gelb", "jaune", "giallo", "amarillo", "zolte"], Metal::YellowGold),
+];
+
 /// Returns the metal that words name, by two of them for alloys of gold.
-fn alloy(words: &[String], metals: &[(String, &'static str)]) -> Option<(String, &'static str)> {
-    let gold = metals.iter().find(|(_, metal)| *metal == "gold");
-    let has = |of: &[&str]| words.iter().any(|word| is_one(word, of));
-    if let Some((word, _)) = gold {
-        if has(&["rose", "rosa", "pink", "red", "rot", "rouge", "rosso"]) {
-            return Some((word.clone(), "rose gold"));
-        }
-        if has(&["white", "weiss", "blanc", "bianco", "blanco", "biale"]) {
-            return Some((word.clone(), "white gold"));
-        }
-        return Some((word.clone(), "gold"));
+fn alloy(words: &[String], metals: &[(String, Option<Metal>)]) -> Option<(String, Option<Metal>)> {
+    let gold = metals.iter().find(|(_, metal)| *metal == Some(Metal::Gold));
+    if let Some((word, gold)) = gold {
+        let has = |of: &[&str]| words.iter().any(|word| is_one(word, of));
+        let alloy = ALLOYS.iter().find(|(words, _)| has(words)).map(|(_, alloy)| *alloy);
+        return Some((word.clone(), alloy.or(*gold)));
     }
     // Named metals before the plain word, and a rose alone is a flower.
     let named = metals.iter().filter(|(word, _)| !["rose", "rosa"].contains(&word.as_str()));
-    let plain = |word: &str| is_one(word, METALS[METALS.len() - 1].0);
-    named.clone().find(|(word, _)| !plain(word)).or(named.clone().next()).cloned()
+    named.clone().find(|(_, metal)| metal.is_some()).or(named.clone().next()).cloned()
 }
 
 /// Whether a word is one of these, or the plural of one.
@@ -204,7 +208,7 @@ fn is_one(word: &str, of: &[&str]) -> bool {
 fn split(name: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();
-    let letters: Vec<char> = name.chars().collect();
+    let letters: Vec<char> = name.chars().filter(|letter| !is_mark(*letter)).collect();
     for (place, &letter) in letters.iter().enumerate() {
         let last = place.checked_sub(1).map(|place| letters[place]);
         let next = letters.get(place + 1);
@@ -217,13 +221,22 @@ fn split(name: &str) -> Vec<String> {
             words.push(std::mem::take(&mut word));
         }
         if letter.is_alphabetic() {
-            word.extend(letter.to_lowercase().map(plain));
+            // A capital such as `İ` is a letter and a mark in lower case.
+            letter.to_lowercase().filter(|letter| !is_mark(*letter)).for_each(|letter| match letter {
+                'ß' => word.push_str("ss"),
+                letter => word.push(plain(letter)),
+            });
         }
     }
     if !word.is_empty() {
         words.push(word);
     }
     words
+}
+
+/// Whether a character is a mark on the letter before it: an accent, or one of kana, as programs write that decompose letters.
+fn is_mark(letter: char) -> bool {
+    matches!(letter, '\u{300}'..='\u{36f}' | '\u{3099}' | '\u{309a}')
 }
 
 /// Returns a letter without its accent.
@@ -240,6 +253,8 @@ fn plain(letter: char) -> char {
         'ù' | 'ú' | 'û' | 'ü' | 'ů' => 'u',
         'ý' => 'y',
         'ź' | 'ż' | 'ž' => 'z',
+        'ダ' => 'タ',
+        'ド' => 'ト',
         other => other,
     }
 }

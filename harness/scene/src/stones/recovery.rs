@@ -13,12 +13,12 @@ const MOST: f64 = 0.9;
 
 impl Scene {
     /// Gives the clear bodies that are convex but for the rounding of their file exact facets, by [`recover`], and returns what was
-    /// done. A body stays as it is if it is convex already, is painted, is no cut stone by its normals, or if `stays` says so.
-    pub fn recover_stones(&mut self, stays: impl Fn(&Object) -> bool) -> Vec<StoneNote> {
+    /// done. A body stays as it is if it is convex already, is painted, or is no cut stone by its normals.
+    pub fn recover_stones(&mut self) -> Vec<StoneNote> {
         let mut notes = Vec::new();
         for object in &mut self.objects {
             let is_painted = object.material.textures().next().is_some();
-            if !object.material.has_clear_inside() || is_painted || stays(object) {
+            if !object.material.has_clear_inside() || is_painted {
                 continue;
             }
             let Some(recovered) = exact(object.shape(), object.material.normals) else { continue };

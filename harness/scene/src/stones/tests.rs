@@ -1,7 +1,7 @@
 use super::*;
 use crate::convex::planes_of_convex;
 use crate::cuts::{BrilliantParameters, StepCutParameters, octahedron, round_brilliant, step_cut};
-use crate::{Averaging, Camera, Material, Preset};
+use crate::{Averaging, Camera, Lacking, Material, Preset};
 use glam::{DMat4, DQuat, DVec3, Vec3};
 
 fn cuts() -> [Mesh; 3] {
@@ -35,13 +35,35 @@ fn diamond() -> Material {
 
 fn scene(objects: Vec<Object>) -> Scene {
     let camera = Camera::framing(crate::object::vertices(&objects), Vec3::Z, 0.5);
-    Scene { name: "ring".to_owned(), objects, lights: Vec::new(), light_radii: Vec::new(), camera, lacking: Vec::new() }
+    Scene {
+        name: "ring".to_owned(),
+        objects,
+        lights: Vec::new(),
+        light_radii: Vec::new(),
+        camera,
+        lacking: Lacking::default(),
+    }
 }
 
 fn joined(meshes: &[Mesh]) -> Mesh {
     let mut all = Mesh::default();
     meshes.iter().for_each(|mesh| all.append(mesh));
     all
+}
+
+/// What a node scales by 0 keeps its name, by which it is told that nothing of it is drawn.
+#[test]
+fn a_body_without_area_stays() {
+    let [mesh, ..] = cuts();
+    for scale in [Vec3::ZERO, Vec3::X] {
+        let mut flat = mesh.clone();
+        flat.positions.iter_mut().for_each(|position| *position *= scale);
+        let mut scene =
+            scene(vec![Object::new("a", flat.clone(), diamond()), Object::new("b", mesh.clone(), diamond())]);
+        scene.part_stones(|_| false);
+        assert_eq!(scene.objects.len(), 2);
+        assert_eq!((&*scene.objects[0].name, &scene.objects[0].mesh), ("a", &flat));
+    }
 }
 
 #[test]

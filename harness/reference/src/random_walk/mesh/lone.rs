@@ -5,7 +5,7 @@ use super::walk::{Beginnings, Matter, Ray};
 use super::{WalkError, matter};
 use crate::spectral::Scatterer;
 use glam::DVec3;
-use lapidary_scene::{Environment, Object, Scene};
+use lapidary_scene::{Environment, Lacking, Object, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
 use std::fmt;
 
@@ -31,7 +31,7 @@ impl<'scene> Lone<'scene> {
                 lights: scene.lights.clone(),
                 light_radii: scene.light_radii.clone(),
                 camera: scene.camera,
-                lacking: Vec::new(),
+                lacking: Lacking::default(),
             };
             // Walks from the eye alone miss light that a boundary reflects inside before it scatters.
             matter(&alone, Boundary::Matched, environment).map(Self)

@@ -78,8 +78,8 @@ fn without_a_time_bodies_are_at_rest_which_is_said() {
     let scene = parse(&file(&document, &data), None).unwrap();
     assert_eq!(only_mesh(&scene).positions[1], Vec3::X);
     let clause = "animations: 1 of the file (bodies are drawn at rest)".to_owned();
-    assert!(scene.lacking.contains(&clause));
-    assert!(!at(&(document, data), 0.0).unwrap().lacking.contains(&clause));
+    assert!(scene.lacking.clauses().contains(&clause));
+    assert!(!at(&(document, data), 0.0).unwrap().lacking.clauses().contains(&clause));
 }
 
 #[test]
@@ -89,8 +89,39 @@ fn channels_of_extensions_are_passed_over() {
     file.0["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
     assert_eq!(corner(&file, 0.0), Vec3::new(5.0, 8.0, 0.0));
     file.0["animations"] = json!([{"channels": 5}]);
-    let clause = "animations: 1 of the file (bodies are drawn at rest)".to_owned();
-    assert!(at(&file, 0.0).unwrap().lacking.contains(&clause));
+    assert!(at(&file, 0.0).unwrap().lacking.clauses().contains(&MOVES_NOTHING.to_owned()));
+}
+
+const MOVES_NOTHING: &str = "animations: 1 of the file (none moves a node; bodies are drawn at rest)";
+
+#[test]
+fn a_time_without_a_motion_is_told() {
+    let mut file = animated("translation", "LINEAR", &[0.0], &[4.0, 8.0, 0.0]);
+    file.0["animations"][0]["channels"][0]["target"]["path"] = json!("weights");
+    assert!(at(&file, 0.0).unwrap().lacking.clauses().contains(&MOVES_NOTHING.to_owned()));
+    file.0.as_object_mut().unwrap().remove("animations");
+    let message = at(&file, 0.0).unwrap_err().to_string();
+    assert_eq!(message, "the file: it has no animation, so that a time (--time) changes nothing; leave it out");
+}
+
+/// What a sampler gives is named by its animation and the node, not by what it does to vertices.
+#[test]
+fn values_that_are_none_are_told_by_their_animation() {
+    let zero = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    let far = |bad: f32| [0.0, 0.0, 0.0, bad, 0.0, 0.0];
+    for (path, way, values, time, what) in [
+        ("rotation", "LINEAR", &zero[..], 0.5, "rotation is undefined, since a key is 0, 0, 0, 0 or not finite"),
+        ("rotation", "STEP", &zero[..], 1.0, "rotation is undefined, since a key is 0, 0, 0, 0 or not finite"),
+        ("translation", "LINEAR", &far(f32::INFINITY)[..], 0.5, "translation is undefined, since a key is not finite"),
+        ("scale", "STEP", &far(f32::NAN)[..], 1.5, "scale is undefined, since a key is not finite"),
+    ] {
+        let mut file = animated(path, way, &[0.0, 1.0], values);
+        file.0["animations"][0]["name"] = json!("spin");
+        let message = at(&file, time).unwrap_err().to_string();
+        assert_eq!(message, format!("animation 0 \"spin\", node 0 \"stone\": at {time} s its {what}; mend the keys"));
+        // Another time needs that key no more.
+        assert!(way == "LINEAR" || at(&file, 0.5).is_ok(), "{path}");
+    }
 }
 
 #[test]

@@ -33,7 +33,11 @@ fn a_camera_is_chosen_by_its_name_its_nodes_or_its_number() {
     for (which, fov) in [("close", 0.7), ("Top", 0.7), ("2", 0.7), ("1", 0.6)] {
         let scene = with_cameras(Some(which)).unwrap();
         assert_eq!(scene.camera.vertical_fov, fov, "{which}");
-        assert!(scene.lacking.iter().all(|clause| !clause.starts_with("cameras")), "{:?}", scene.lacking);
+        assert!(
+            scene.lacking.clauses().iter().all(|clause| !clause.starts_with("cameras")),
+            "{:?}",
+            scene.lacking.clauses()
+        );
     }
     let error = with_cameras(Some("side")).unwrap_err().to_string();
     assert_eq!(error, r#"its scene has no camera `side`; it has camera 1, camera 2 "close", camera 0 "plan""#);

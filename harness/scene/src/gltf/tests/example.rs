@@ -17,7 +17,7 @@ fn example() -> Scene {
 #[test]
 fn the_documented_example_asks_for_nothing_in_vain_and_survives_writing() {
     let scene = example();
-    assert_eq!(scene.lacking, [""; 0]);
+    assert_eq!(scene.lacking.clauses(), [""; 0]);
     let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names, ["skin", "jade", "rubies", "wax"]);
     let again = parse(&glb::write(&scene).unwrap(), None).unwrap();

@@ -31,7 +31,7 @@ fn texels(image: &[u8], extension: &str) -> (u32, u32, Vec<u8>) {
         d["textures"] = json!([{"extensions": {extension: {"source": 0}}}]);
     });
     let scene = scene.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(scene.lacking, [""; 0]);
+    assert_eq!(scene.lacking.clauses(), [""; 0]);
     let texels = &scene.objects[0].material.base_color_texture.as_ref().unwrap().texels;
     (texels.width(), texels.height(), texels.bytes().to_vec())
 }
@@ -117,5 +117,5 @@ fn faults_of_compressed_images() {
     let other = load_textured(&word(UASTC, 12, 37), |_| ()).unwrap();
     let clause =
         "textures: `baseColorTexture` in KTX2 without Basis Universal of material `gem` (a factor is drawn alone)";
-    assert_eq!(other.lacking, [clause]);
+    assert_eq!(other.lacking.clauses(), [clause]);
 }

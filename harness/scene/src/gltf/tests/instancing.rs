@@ -46,7 +46,7 @@ fn instances_are_one_object_each_placed_before_its_node() {
     assert_eq!(mesh.positions, [Vec3::Z, Vec3::new(2.0, 0.0, 1.0), Vec3::new(0.0, 2.0, 1.0), a, b, c]);
     // The second is mirrored, and still faces +z.
     assert_eq!((&mesh.indices[..], &mesh.normals[..]), (&[0, 1, 2, 3, 5, 4][..], &[Vec3::Z; 6][..]));
-    assert_eq!(scene.lacking, [""; 0]);
+    assert_eq!(scene.lacking.clauses(), [""; 0]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ fn lacking(change: impl FnOnce(&mut Value)) -> Vec<String> {
         d["materials"][0]["pbrMetallicRoughness"] = json!({"metallicFactor": 0});
         change(d);
     });
-    scene.unwrap().lacking
+    scene.unwrap().lacking.clauses()
 }
 
 /// Returns the unsupported features of a material with these members.
@@ -31,10 +31,10 @@ fn of_extensions(extensions: Value) -> Vec<String> {
 fn plain_files_and_built_in_scenes_lack_nothing() {
     assert_eq!(lacking(|_| ()), [""; 0]);
     for built_in in BUILT_IN {
-        assert_eq!(Scene::named(built_in.name).unwrap().lacking, [""; 0]);
+        assert_eq!(Scene::named(built_in.name).unwrap().lacking.clauses(), [""; 0]);
         // The same holds when the scene is read back from a file.
         let again = parse(&glb::write(&Scene::named(built_in.name).unwrap()).unwrap(), None).unwrap();
-        assert_eq!(again.lacking, [""; 0], "{}", built_in.name);
+        assert_eq!(again.lacking.clauses(), [""; 0], "{}", built_in.name);
     }
 }
 
@@ -116,7 +116,58 @@ fn what_a_surface_lacks_is_named() {
     assert_eq!(of_material(json!({"pbrMetallicRoughness": {"roughnessFactor": 0}, "extensions": clear})), [""; 0]);
     // The default material is one.
     let scene = load_changed(|_| ()).unwrap();
-    assert!(scene.objects[0].material.is_all_metal() && scene.lacking.is_empty());
+    assert!(scene.objects[0].material.is_all_metal() && scene.lacking.clauses().is_empty());
+}
+
+/// What a material lacks matters no more once all bodies of it have another; what meshes and the file lack stays.
+#[test]
+fn what_replaced_materials_lack_is_left_out() {
+    let scene = load_changed(|d| {
+        let primitive = |material: Option<u32>| match material {
+            Some(material) => json!({"attributes": {"POSITION": 0}, "indices": 1, "material": material}),
+            None => json!({"attributes": {"POSITION": 0}, "indices": 1, "targets": [{"POSITION": 0}]}),
+        };
+        // Two materials of one name.
+        d["materials"] = json!([
+            {"name": "gem", "emissiveFactor": [1, 1, 1]},
+            {"name": "gem", "emissiveFactor": [1, 1, 1], "normalTexture": {"index": 0}},
+        ]);
+        d["meshes"][0]["primitives"] = json!([primitive(Some(0)), primitive(Some(1)), primitive(None)]);
+        d["meshes"].as_array_mut().unwrap().push(json!({"primitives": [primitive(Some(0))]}));
+        d["nodes"] = json!([{"mesh": 0}, {"mesh": 1}]);
+        d["scenes"][0]["nodes"] = json!([0, 1]);
+        d["extensionsUsed"] = json!(["MSFT_texture_dds"]);
+    });
+    let Scene { objects, lacking, .. } = scene.expect("a scene");
+    assert_eq!(objects.len(), 4);
+    let left = |replaced: &[usize]| {
+        let mut lacking = lacking.clone();
+        lacking.replace(|body| replaced.contains(&body));
+        lacking.clauses()
+    };
+    let emission = |who: &str| format!("emission: `emissiveFactor` of {who} (nothing shines by itself)");
+    let always = [
+        "extensions: `MSFT_texture_dds` of the file (not known)",
+        "morph targets: `targets` of mesh 0 (the body is drawn without them)",
+    ];
+    let texture = "textures: a missing `TEXCOORD_0` of mesh 0 (factors are drawn alone)";
+    let both = "2 materials, first `gem`";
+    let sorted = |clauses: &[&str]| {
+        let mut clauses: Vec<String> = clauses.iter().chain(&always).map(|clause| (*clause).to_owned()).collect();
+        clauses.sort();
+        clauses
+    };
+    let found = |replaced: &[usize]| {
+        let mut clauses = left(replaced);
+        clauses.sort();
+        clauses
+    };
+    assert_eq!(found(&[]), sorted(&[&emission(both), texture]));
+    // One of the two bodies of the first material.
+    assert_eq!(found(&[0, 1]), sorted(&[&emission("material `gem`")]));
+    assert_eq!(found(&[0, 3]), sorted(&[&emission("material `gem`"), texture]));
+    assert_eq!(found(&[2]), sorted(&[&emission(both), texture]));
+    assert_eq!(left(&[0, 1, 2, 3]), always);
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn an_index_that_no_stone_has_is_drawn_as_the_nearest_and_said() {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
             d["materials"][0] = json!({"name": "gem", "extensions": {DIAMOND: {"refractiveIndex": index}}});
         });
-        let lacking = scene.unwrap().lacking.join("; ");
+        let lacking = scene.unwrap().lacking.clauses().join("; ");
         assert!(
             lacking.contains(&format!("`refractiveIndex` {index:?} of material `gem` (drawn as {drawn})")),
             "{lacking}"

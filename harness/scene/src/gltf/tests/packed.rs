@@ -11,7 +11,11 @@ macro_rules! files {
 
 fn scene(name: &str, bytes: &[u8]) -> Scene {
     let scene = parse(bytes, None).unwrap_or_else(|error| panic!("{name}: {error}"));
-    assert!(!scene.lacking.iter().any(|line| line.contains("extensions")), "{name}: {:?}", scene.lacking);
+    assert!(
+        !scene.lacking.clauses().iter().any(|line| line.contains("extensions")),
+        "{name}: {:?}",
+        scene.lacking.clauses()
+    );
     scene
 }
 

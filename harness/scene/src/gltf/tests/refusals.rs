@@ -105,7 +105,7 @@ fn what_nothing_drawn_needs_stops_nothing() {
             d["extensionsUsed"] = json!([name]);
         });
         let says = format!("extensions: `{name}` of the file (not known)");
-        assert!(scene.lacking.contains(&says), "{:?}", scene.lacking);
+        assert!(scene.lacking.clauses().contains(&says), "{:?}", scene.lacking.clauses());
     }
     // As exporters write them, and with members that this program's parser refuses.
     let scene = loads(&|d| {
@@ -116,9 +116,9 @@ fn what_nothing_drawn_needs_stops_nothing() {
         d["animations"] = json!([{"channels": [{"target": {"path": 7}}], "samplers": 3}, {}]);
     });
     assert!(
-        scene.lacking.contains(&"animations: 2 of the file (bodies are drawn at rest)".to_owned()),
+        scene.lacking.clauses().contains(&"animations: 2 of the file (bodies are drawn at rest)".to_owned()),
         "{:?}",
-        scene.lacking
+        scene.lacking.clauses()
     );
 }
 
@@ -174,20 +174,6 @@ fn nodes_that_are_no_tree() {
 
 #[test]
 fn materials_and_cameras_out_of_range() {
-    for (ior, says) in [
-        (0.0, "its ior is 0,"),
-        (0.9, "its ior is 0.9, but a stone's"),
-        (-1.0, "between 1 and 4"),
-        (4.1, "between 1 and 4"),
-        (1e39, "between 1 and 4"),
-    ] {
-        let message = message(|d| {
-            d["meshes"][0]["primitives"][0]["material"] = json!(0);
-            d["materials"][0]["extensions"] =
-                json!({"KHR_materials_ior": {"ior": ior}, "KHR_materials_transmission": {"transmissionFactor": 1}});
-        });
-        assert!(message.starts_with("material 0 \"gem\": ") && message.contains(says), "{message}");
-    }
     for part in [-0.1, 1.5, 1e39] {
         let message = message(|d| {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);

@@ -173,7 +173,7 @@ fn a_mesh_without_coordinates_gets_the_factors() {
     let scene = scene.unwrap();
     let counts = scene.objects.iter().map(|object| object.material.textures().count());
     assert_eq!(counts.collect::<Vec<_>>(), [1, 0]);
-    assert_eq!(scene.lacking, ["textures: a missing `TEXCOORD_0` of mesh 0 (factors are drawn alone)"]);
+    assert_eq!(scene.lacking.clauses(), ["textures: a missing `TEXCOORD_0` of mesh 0 (factors are drawn alone)"]);
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn samplers_say_how_an_image_goes_on() {
         d["samplers"] = json!([{"magFilter": 9728}]);
     });
     let says = "textures: `magFilter` NEAREST of `baseColorTexture` of material `gem` (texels are interpolated)";
-    assert!(nearest.unwrap().lacking.contains(&says.to_owned()));
+    assert!(nearest.unwrap().lacking.clauses().contains(&says.to_owned()));
 }
 
 #[test]
@@ -222,7 +222,7 @@ fn what_cannot_be_drawn_is_named_and_replaced_by_its_factor() {
     let named = |image: &[u8], change: &dyn Fn(&mut Value), says: &str| {
         let scene = load_textured(image, |d| change(d)).unwrap();
         assert_eq!(scene.objects[0].material.textures().count(), 0, "{says}");
-        assert_eq!(scene.lacking, [format!("textures: {says} of material `gem` (a factor is drawn alone)")]);
+        assert_eq!(scene.lacking.clauses(), [format!("textures: {says} of material `gem` (a factor is drawn alone)")]);
     };
     named(b"\xabKTX 11\xbb\r\n\x1a\n----", &|_| (), "`baseColorTexture` in KTX");
     named(b"GIF89a----", &|_| (), "`baseColorTexture` in GIF");

@@ -42,11 +42,11 @@ fn rounded_cuts_become_convex_with_averaged_and_with_flat_normals() {
     for mesh in [brilliant(), flat(&brilliant())] {
         assert_eq!(planes_of_convex(&mesh), None);
         let mut scene = scene(mesh, glass());
-        let notes = scene.recover_stones(|_| false);
+        let notes = scene.recover_stones();
         assert_eq!(planes_of_convex(&scene.objects[0].mesh).map(|planes| planes.len()), Some(73));
         let line = notes.iter().map(ToString::to_string).collect::<String>();
         assert!(line.starts_with("object `stone`: convex but for rounding, drawn with 73 exact facets"), "{line}");
-        assert_eq!(scene.recover_stones(|_| false), []);
+        assert_eq!(scene.recover_stones(), []);
     }
 }
 
@@ -57,14 +57,14 @@ fn copies_share_the_recovered_shape() {
     let copies = Copies { shape: brilliant(), places: vec![Place::IDENTITY, place] };
     let mut scene = scene(Mesh::default(), glass());
     scene.objects = vec![Object::of_copies("pair", copies, glass())];
-    assert_eq!(scene.recover_stones(|_| false).len(), 1);
+    assert_eq!(scene.recover_stones().len(), 1);
     let pair = &scene.objects[0];
     assert_eq!(planes_of_convex(pair.shape()).map(|planes| planes.len()), Some(73));
     assert_eq!(pair.mesh, pair.copies.as_ref().unwrap().joined());
 }
 
 #[test]
-fn round_opaque_painted_and_chosen_bodies_stay() {
+fn round_opaque_and_painted_bodies_stay() {
     let round = rounded(sphere(1.0, 24));
     for (mesh, material) in [
         (round, glass()),
@@ -73,9 +73,7 @@ fn round_opaque_painted_and_chosen_bodies_stay() {
         (Mesh { colors: vec![Vec3::ONE; brilliant().positions.len()], ..brilliant() }, glass()),
     ] {
         let mut scene = scene(mesh.clone(), material);
-        assert_eq!(scene.recover_stones(|_| false), []);
+        assert_eq!(scene.recover_stones(), []);
         assert_eq!(scene.objects[0].mesh, mesh);
     }
-    let mut scene = scene(brilliant(), glass());
-    assert_eq!(scene.recover_stones(|object| object.name == "stone"), []);
 }

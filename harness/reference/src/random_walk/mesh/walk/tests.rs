@@ -31,7 +31,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
         lights,
         light_radii: Vec::new(),
         camera,
-        lacking: Vec::new(),
+        lacking: lapidary_scene::Lacking::default(),
     }
 }
 
