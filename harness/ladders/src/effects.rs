@@ -362,7 +362,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             scene: gilded,
             settings: settings("lambert"),
             effects: &[Effect::Metal, Effect::RoughnessTexture, Effect::Microfacet],
-            stands_on: &[],
+            stands_on: &[(Effect::RoughnessTexture, Effect::Metal)],
         },
         Case {
             name: "vitrine, table and ruby",
