@@ -260,8 +260,8 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature, thickness, transmission);
 }
 
-// What the surface is at a pixel where light does not enter: the width of the microfacets' slopes, and the share that is
-// a metal's.
+// What the surface is at a pixel where light does not enter: the width of the microfacets' slopes, and the share that
+// is a metal's.
 struct CdrfGloss {
     alpha: f32,
     metallic: f32,

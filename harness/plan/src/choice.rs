@@ -4,6 +4,7 @@ use super::among;
 use super::effect::Effect;
 use super::numbers::{percent, short};
 use super::quality::Technique;
+use super::shape;
 use super::thickness::Thickness;
 use super::through;
 use crate::request::Scattering;
@@ -71,7 +72,7 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     {
         return Some(format!("it shares space with {}", other.name));
     }
-    if inside && has(Effect::Smooth) && among::is_smooth(object) {
+    if inside && has(Effect::Smooth) && shape::is_smooth(object) {
         return Some("its normals are those of a smooth surface".to_owned());
     }
     if has(Effect::Rough) && object.material.facet_slope() > 0.0 {
@@ -121,7 +122,7 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
 /// Whether a clear body with an inside may be drawn by the planes of its facets where time counts.
 fn walks(object: &Object, request: &Request<'_>) -> bool {
     let joined = object.copies.is_some() && request.without.has(Effect::Instances);
-    request.quality != Quality::Best && !joined && among::is_convex(object)
+    request.quality != Quality::Best && !joined && shape::is_convex(object)
 }
 
 /// Returns the technique for a clear body with an inside, and the reason. The proxy is never

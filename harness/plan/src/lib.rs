@@ -33,10 +33,11 @@ mod remembered;
 mod request;
 mod rung;
 mod setting;
+mod shape;
 pub mod thickness;
 mod through;
 
-pub use among::{IMAGES_MET, is_smooth};
+pub use among::IMAGES_MET;
 pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use note::{Gravity, Note, Objects};
@@ -45,3 +46,4 @@ pub use outside::{MOST_BODIES, Outside};
 pub use quality::{Quality, Technique};
 pub use request::{Request, Scattering};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
+pub use shape::is_smooth;

@@ -1,7 +1,7 @@
 //! Whether a body that shares space with a cut stone only holds it, or stands beside it.
 
-use crate::among;
 use crate::remembered::Remembered;
+use crate::shape;
 use glam::DVec3;
 use lapidary_scene::convex::planes_of_convex;
 use lapidary_scene::polyhedron::Plane;
@@ -17,7 +17,7 @@ const TOUCHES: f64 = 2e-5;
 pub(crate) fn holds(other: &Object, stone: &Object) -> bool {
     static FOUND: Remembered<bool> = Remembered::new();
     let material = &other.material;
-    let is_cut = material.has_clear_inside() && among::is_convex(other) && !among::is_smooth(other);
+    let is_cut = material.has_clear_inside() && shape::is_convex(other) && !shape::is_smooth(other);
     let may = is_cut || !material.is_clear() && !material.scatters();
     may && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other, DEEPEST))
 }

@@ -1,7 +1,8 @@
 //! How much of the light that a convex stone sends to the eye comes from other clear bodies.
 
-use crate::among::{is_convex, seen};
+use crate::among::seen;
 use crate::casting::bounds;
+use crate::shape::is_convex;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use lapidary_bvh_trace::traversal;
 use lapidary_convex_trace as convex_trace;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use glam::Vec3;
+
 use crate::material::Metal;
 use crate::{Object, Preset, Scene};
 
@@ -86,7 +88,8 @@ impl fmt::Display for Guess {
 /// that are `given` a material. Bodies that look like nothing in particular are left out.
 ///
 /// A stone has a name that says so and facets or a convex shape, or is a cut stone by its shape alone: closed, convex or nearly,
-/// with flat facets of many directions. A metal is opaque, with a name that says so or a metallicFactor of at least a half.
+/// with flat facets of many directions. A metal is opaque, with a name that says so; what is marked as one, by a metallicFactor
+/// of at least a half, is guessed only where it has no colour and the name says which it is.
 #[must_use]
 pub fn guesses(scene: &Scene, given: impl Fn(usize) -> bool) -> Vec<Guess> {
     let looks: Vec<Option<(Look, Vec<String>)>> = scene
@@ -155,16 +158,17 @@ fn look(object: &Object) -> Option<(Look, Vec<String>)> {
             return Some((Look::Stone(preset), name.into_iter().chain([cut.to_string()]).chain(how).collect()));
         }
     }
-    let (word, metal) = words.metal.map_or((None, None), |(word, metal)| (Some(word), metal));
+    let (word, metal) = words.metal?;
+    // What a file marks as a metal is drawn as one. Its colour stays, unless it has none and its name says which.
+    let is_colored = material.base_color != Vec3::ONE || material.base_color_texture.is_some();
     // A short word that means something else in other languages counts with the factor alone.
-    let is_sure = word.as_ref().is_some_and(|word| !words::is_ambiguous(word));
-    if !material.is_opaque() || !(is_metallic || is_sure) {
+    let counts = if is_metallic { !is_colored && metal.is_some() } else { !words::is_ambiguous(&word) };
+    if !material.is_opaque() || !counts {
         return None;
     }
-    let evidence = word.map(|word| says(&word)).into_iter();
-    let factor = is_metallic.then(|| format!("metallicFactor {}", material.metallic));
+    let factor = is_metallic.then(|| format!("metallicFactor {} and no colour", material.metallic));
     let metal = metal.unwrap_or_else(|| color::nearest_metal(material.base_color));
-    Some((Look::Metal(metal), evidence.chain(factor).collect()))
+    Some((Look::Metal(metal), std::iter::once(says(&word)).chain(factor).collect()))
 }
 
 #[cfg(test)]

@@ -339,17 +339,19 @@ fn gem_arrive(ray: ptr<function, GemRay>, hit: GemHit) -> bool {
     }
     var way = hit.distance;
     var met = vec4f(0.0f, 0.0f, 0.0f, -1.0f);
-    if (EFFECT_AROUND && EFFECT_NESTED && (*ray).followed) {
-        let within = gem_world_length(hit.distance);  //+around,nested
-        let start = gem_world_position((*ray).position);  //+around,nested
-        met = beside_met(start, gem_world_direction((*ray).direction), within);  //+around,nested
-        way *= select(1.0f, met.w / within, met.w >= 0.0f && within > 0.0f);  //+around,nested
+    if (EFFECT_AROUND) {
+        if (EFFECT_NESTED && (*ray).followed) {
+            let within = gem_world_length(hit.distance);  //+around,nested
+            let start = gem_world_position((*ray).position);  //+around,nested
+            met = beside_met(start, gem_world_direction((*ray).direction), within);  //+around,nested
+            way *= select(1.0f, met.w / within, met.w >= 0.0f && within > 0.0f);  //+around,nested
+        }
     }
     if (EFFECT_ABSORPTION && (*ray).followed) {
         (*ray).throughput *= gem_transmittance(way);
     }
-    if (EFFECT_AROUND && EFFECT_NESTED) {
-        if (met.w >= 0.0f) {
+    if (EFFECT_AROUND) {
+        if (EFFECT_NESTED && met.w >= 0.0f) {
             // Nothing of the light comes back from there.
             (*ray).radiance += (*ray).throughput * met.rgb;
             (*ray).throughput = vec3f(0.0f);

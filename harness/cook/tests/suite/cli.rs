@@ -237,7 +237,8 @@ fn listed_names_are_those_that_the_options_take() {
     let rungs = names("--rungs", "rung");
     assert!(rungs.len() > 50 && rungs.iter().all(|name| name.parse::<lapidary_plan::Rung>().is_ok()), "{rungs:?}");
     let materials = names("--materials", "name");
-    let asked = "diamond, ruby, sapphire, emerald, quartz, moissanite, zirconia, jade, marble, wax, skin";
+    let asked = "diamond, ruby, sapphire, emerald, quartz, moissanite, zirconia, gold, yellow_gold, rose_gold, white_gold, \
+                 silver, platinum, copper, steel, jade, marble, wax, skin";
     assert_eq!(materials.join(", "), asked);
     for name in materials {
         let plan = succeeds(folder.path(), &["plan", "octahedron", "--material", &name, "--json"]).stdout;

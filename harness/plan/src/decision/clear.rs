@@ -3,6 +3,7 @@
 use super::{Answer, Case, off, on};
 use crate::among;
 use crate::numbers::{short, triple};
+use crate::shape;
 use crate::{Effect, Geometry, MOST_BODIES, Outside, Quality, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::{Dispersion, Material, Object, Shape, TextureSlot};
@@ -116,11 +117,11 @@ impl Case<'_> {
     }
 
     pub(super) fn smooth(&self) -> Answer {
-        match self.first(among::is_smooth) {
+        match self.first(shape::is_smooth) {
             Some(object) => {
                 self.among(Some(format!("the normals of {} are those of a smooth surface", object.name)), "")
             }
-            None => self.among(None, among::why_flat(self.object)),
+            None => self.among(None, shape::why_flat(self.object)),
         }
     }
 

@@ -210,22 +210,25 @@ fn decomposed_letters_are_letters() {
 }
 
 #[test]
-fn metals_are_told_by_factor_and_name() {
+fn metals_are_told_by_name() {
     let band = || torus(2.0, 0.3, 40, 20);
     assert_eq!(looks("band", band(), plastic("m")), None);
     assert_eq!(looks("band", band(), plastic("Gold")), Some(Look::Metal(Metal::Gold)));
     assert_eq!(looks("ring or band", band(), plastic("m")), None);
     assert_eq!(looks("or", band(), metal("m", Vec3::ONE)), Some(Look::Metal(Metal::Gold)));
+    // What is marked as a metal keeps its colour.
+    assert_eq!(looks("gold", band(), metal("m", Vec3::new(0.9, 0.7, 0.1))), None);
+    assert_eq!(looks("band", band(), metal("m", Vec3::ONE)), None);
     // A metal by name is no stone, though it is cut like one.
     assert_eq!(looks("silver bead", brilliant(), plastic("m")), Some(Look::Metal(Metal::Silver)));
     // A clear body is none.
     assert_eq!(looks("gold", band(), Material { transmission: 1.0, metallic: 1.0, ..plastic("m") }), None);
 }
 
-/// A metal without a name for it is the one whose base colour is nearest, also in the shade.
+/// A metal whose name does not say which is the one whose base colour is nearest, also in the shade.
 #[test]
 fn metals_are_told_by_colour() {
-    let found = |color: Vec3| looks("band", torus(2.0, 0.3, 40, 20), metal("m", color));
+    let found = |color: Vec3| looks("Metall", torus(2.0, 0.3, 40, 20), Material { base_color: color, ..plastic("m") });
     for metal in Metal::ALL {
         assert_eq!(found(metal.base_color()), Some(Look::Metal(metal)), "{}", metal.name());
         // The preset's name, as the page on scene files lists it.
@@ -255,7 +258,7 @@ fn bodies_of_one_material_are_one_guess_with_its_option() {
         &scene(vec![
             Object::new("a", brilliant(), plastic("Gem")),
             Object::new("b", brilliant(), plastic("Gem")),
-            Object::new("band", torus(2.0, 0.3, 40, 20), metal("metal", Vec3::new(1.0, 0.77, 0.34))),
+            Object::new("gold band", torus(2.0, 0.3, 40, 20), plastic("m")),
             Object::new("table", torus(9.0, 0.3, 40, 20), plastic("paint")),
             Object::new("it's", brilliant(), plastic("paint")),
             Object::new("given", brilliant(), plastic("other")),
