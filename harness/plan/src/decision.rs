@@ -10,6 +10,7 @@ use super::chosen::Chosen;
 use super::effect::{Effect, Effects};
 use super::enclosed;
 use super::numbers::{short, triple};
+use super::remembered::holding;
 use crate::{Geometry, Quality, Request, Rung};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
@@ -43,12 +44,16 @@ impl Decisions {
     /// Returns the decisions for all objects of `scene`, in order.
     #[must_use]
     pub fn all(scene: &Scene, request: &Request<'_>) -> Vec<Self> {
-        scene.objects.iter().map(|object| Self::of(object, scene, request)).collect()
+        holding(scene, || scene.objects.iter().map(|object| Self::of(object, scene, request)).collect())
     }
 
     /// Returns the decisions for one object of `scene`.
     #[must_use]
     pub fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> Self {
+        holding(scene, || Self::decided(object, scene, request))
+    }
+
+    fn decided(object: &Object, scene: &Scene, request: &Request<'_>) -> Self {
         let (choice, reason) = choice::of(object, scene, request);
         let (rung, chosen) = match choice {
             Choice::Named(rung) => (rung, None),

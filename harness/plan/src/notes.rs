@@ -5,7 +5,7 @@ mod shared_space;
 
 use super::{Decisions, thickness, through};
 use crate::among;
-use crate::remembered::Remembered;
+use crate::remembered::{Remembered, holding};
 use crate::{Effect, Geometry, Note, Objects, Request, Rung, enclosed};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
@@ -32,6 +32,10 @@ const WHITE: f32 = 254.5 / 255.0;
 /// `decisions` are those of the scene's objects, in the same order.
 #[must_use]
 pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec<Note> {
+    holding(scene, || found(scene, request, decisions))
+}
+
+fn found(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec<Note> {
     let around = mean_radiance(request.environment);
     let mut notes: Vec<Note> = Vec::new();
     if is_out_of_view(scene, request) {

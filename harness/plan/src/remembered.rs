@@ -1,7 +1,8 @@
 //! What is measured on a mesh is measured once in a process: a scene is planned several times for one picture, and again
 //! for other settings.
 
-use lapidary_scene::Mesh;
+use lapidary_scene::{Mesh, Scene};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::{Mutex, PoisonError};
@@ -16,12 +17,14 @@ impl<T: Copy> Remembered<T> {
 
     /// Returns the measure of a mesh, which must follow from its positions, normals and triangles alone.
     pub(crate) fn of(&self, mesh: &Mesh, measure: impl FnOnce(&Mesh) -> T) -> T {
-        self.by_key(key(&[mesh]), || measure(mesh))
+        self.by_key(key(mesh), || measure(mesh))
     }
 
     /// Returns a measure of two meshes in their order.
     pub(crate) fn of_both(&self, one: &Mesh, other: &Mesh, measure: impl FnOnce(&Mesh, &Mesh) -> T) -> T {
-        self.by_key(key(&[one, other]), || measure(one, other))
+        let mut both = DefaultHasher::new();
+        [key(one), key(other)].hash(&mut both);
+        self.by_key(both.finish(), || measure(one, other))
     }
 
     fn by_key(&self, key: u64, measure: impl FnOnce() -> T) -> T {
@@ -36,13 +39,51 @@ impl<T: Copy> Remembered<T> {
     }
 }
 
-fn key(meshes: &[&Mesh]) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    for mesh in meshes {
-        mesh.indices.hash(&mut hasher);
-        let vectors = mesh.positions.iter().chain(&mesh.normals);
-        vectors.for_each(|vector| vector.to_array().map(f32::to_bits).hash(&mut hasher));
+thread_local! {
+    /// Hashes of the meshes of a scene that is held, by where they stand; `None` until one is asked for.
+    static KEYS: RefCell<BTreeMap<usize, Option<u64>>> = const { RefCell::new(BTreeMap::new()) };
+}
+
+/// Calls `decide` while the scene is held: nothing changes its meshes, and each is hashed once. A band is compared with every
+/// stone in it.
+pub(crate) fn holding<T>(scene: &Scene, decide: impl FnOnce() -> T) -> T {
+    struct Release;
+    impl Drop for Release {
+        fn drop(&mut self) {
+            KEYS.with_borrow_mut(BTreeMap::clear);
+        }
     }
+    // What is held stays so, and meshes of another scene stand elsewhere.
+    if KEYS.with_borrow(|keys| !keys.is_empty()) {
+        return decide();
+    }
+    let _release = Release;
+    let meshes = scene.objects.iter().flat_map(|object| [&object.mesh, object.shape()]);
+    KEYS.with_borrow_mut(|keys| keys.extend(meshes.map(|mesh| (place(mesh), None))));
+    decide()
+}
+
+fn place(mesh: &Mesh) -> usize {
+    std::ptr::from_ref(mesh).addr()
+}
+
+fn key(mesh: &Mesh) -> u64 {
+    let held = KEYS.with_borrow(|keys| keys.get(&place(mesh)).copied());
+    if let Some(Some(known)) = held {
+        return known;
+    }
+    let made = hashed(mesh);
+    if held.is_some() {
+        KEYS.with_borrow_mut(|keys| keys.insert(place(mesh), Some(made)));
+    }
+    made
+}
+
+fn hashed(mesh: &Mesh) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    mesh.indices.hash(&mut hasher);
+    let vectors = mesh.positions.iter().chain(&mesh.normals);
+    vectors.for_each(|vector| vector.to_array().map(f32::to_bits).hash(&mut hasher));
     hasher.finish()
 }
 
@@ -62,5 +103,20 @@ mod tests {
         assert_eq!(remembered.of(&mesh, |_| 3), 3);
         mesh.indices.swap(0, 1);
         assert_eq!(remembered.of(&mesh, |_| 4), 4);
+    }
+
+    #[test]
+    fn a_held_scene_is_let_go() {
+        let remembered = Remembered::new();
+        let mut scene = Scene::named("octahedron").unwrap();
+        for expected in [1, 2] {
+            let found = holding(&scene, || {
+                let mesh = &scene.objects[0].mesh;
+                assert_eq!(remembered.of(&mesh.clone(), |_| expected), remembered.of(mesh, |_| 3));
+                remembered.of(mesh, |_| 4)
+            });
+            assert_eq!(found, expected);
+            scene.objects[0].mesh.positions[0].x += 1.0;
+        }
     }
 }

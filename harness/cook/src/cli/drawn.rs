@@ -317,7 +317,7 @@ fn refuse_what_is_ignored(
     }
     let scatters = render::scatters(scene);
     let rungs: Vec<Rung> =
-        scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
+        Decisions::all(scene, &settings.request()).into_iter().map(|decisions| decisions.rung).collect();
     match given.iter().find(|given| !rungs.iter().any(|rung| (given.draws)(*rung, scatters))) {
         Some(Given { technique, flags, .. }) => Err(Failure(format!(
             "scene `{}` by rung `{}`: {} {} no meaning, since nothing there is drawn by {technique}; leave {} out or take another rung",

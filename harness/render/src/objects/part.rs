@@ -27,12 +27,9 @@ impl<'a> Part<'a> {
     /// Returns the parts of a scene, in the order of their first objects.
     pub(crate) fn all(scene: &'a Scene, settings: &'a Settings) -> Vec<Self> {
         // An object without triangles has nothing to draw, and buffers must not be empty.
-        let shown = scene.objects.iter().zip(names(scene)).filter(|(object, _)| !object.mesh.indices.is_empty());
-        let drawn = shown.map(|(object, name)| Drawn {
-            object,
-            name,
-            decisions: Decisions::of(object, scene, &settings.request()),
-        });
+        let objects = scene.objects.iter().zip(names(scene)).zip(Decisions::all(scene, &settings.request()));
+        let shown = objects.filter(|((object, _), _)| !object.mesh.indices.is_empty());
+        let drawn = shown.map(|((object, name), decisions)| Drawn { object, name, decisions });
         let part = |(rung, objects)| Part { rung, lights: &scene.lights, settings, objects };
         grouped(drawn.collect(), |drawn| drawn.decisions.rung).into_iter().map(part).collect()
     }

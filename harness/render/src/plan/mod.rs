@@ -54,13 +54,15 @@ impl Plan {
     /// If the scene cannot be drawn with these settings.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         let scene = &*with_copies_apart(scene, settings);
-        let planned = |(object, name): (&lapidary_scene::Object, String)| PlannedObject {
+        let frame = scene_frame::frame(None, scene, settings)?;
+        let decided = Decisions::all(scene, &settings.request()).into_iter();
+        let planned = scene.objects.iter().zip(names(scene)).zip(decided);
+        let planned = planned.map(|((object, name), decisions)| PlannedObject {
             object: name,
             material: object.material.name.clone(),
-            decisions: Decisions::of(object, scene, &settings.request()),
-        };
-        let frame = scene_frame::frame(None, scene, settings)?;
-        let objects: Vec<PlannedObject> = scene.objects.iter().zip(names(scene)).map(planned).collect();
+            decisions,
+        });
+        let objects: Vec<PlannedObject> = planned.collect();
         let decisions: Vec<&Decisions> = objects.iter().map(|planned| &planned.decisions).collect();
         Ok(Self {
             scene: scene.name.clone(),
