@@ -71,26 +71,24 @@ fn others<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = (&'a
 
 /// Returns the first body that shares space with a clear one, which has an inside.
 pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
-    sharing(object, scene).next()
+    met(object, scene).find(|other| share(object, other))
 }
 
 /// Returns the first such body that does more than hold a cut stone.
 pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
-    sharing(object, scene).find(|other| !setting::holds(other, object))
+    // Vertices in a body of many triangles take much longer than planes of a stone.
+    met(object, scene).find(|other| !setting::holds(other, object) && share(object, other))
 }
 
 /// Returns the first body that is not clear and lies within a convex stone in part.
 pub(crate) fn reached_by_opaque<'a>(object: &'a Object, scene: &'a Scene) -> Option<&'a Object> {
-    let own = bounds(object);
-    others(object, scene)
-        .find(|(other, bounds)| meet(*bounds, own) && setting::enters(other, object))
-        .map(|(other, _)| other)
+    met(object, scene).find(|other| setting::enters(other, object))
 }
 
-fn sharing<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {
+/// Returns the other bodies whose boxes meet that of a body.
+fn met<'a>(object: &'a Object, scene: &'a Scene) -> impl Iterator<Item = &'a Object> {
     let own = bounds(object);
-    let met = others(object, scene).filter(move |(_, bounds)| meet(*bounds, own)).map(|(other, _)| other);
-    met.filter(|other| share(object, other))
+    others(object, scene).filter(move |(_, bounds)| meet(*bounds, own)).map(|(other, _)| other)
 }
 
 /// Whether a clear body and another one share space.
