@@ -56,8 +56,9 @@ fn split_sum_tables_texel(uv: vec2f, level: u32) -> vec3f {
     let around = environment_texels(uv, size);
     let upper_row = start + around.lower.y * size.x;
     let lower_row = start + around.upper.y * size.x;
-    let upper = mix(radiance[upper_row + around.lower.x].rgb, radiance[upper_row + around.upper.x].rgb, around.weight.x);
-    let lower = mix(radiance[lower_row + around.lower.x].rgb, radiance[lower_row + around.upper.x].rgb, around.weight.x);
+    let columns = vec2u(around.lower.x, around.upper.x);
+    let upper = mix(radiance[upper_row + columns.x].rgb, radiance[upper_row + columns.y].rgb, around.weight.x);
+    let lower = mix(radiance[lower_row + columns.x].rgb, radiance[lower_row + columns.y].rgb, around.weight.x);
     return mix(upper, lower, around.weight.y);
 }
 

@@ -26,7 +26,7 @@ fn beside_share(packed: f32) -> vec3f {
     return roots * roots;
 }
 
-// Radiance that a metal's triangle sends against a ray: the environment, without the lights and by the triangle's plane.
+// Radiance that a metal's triangle sends against a ray: the environment, by the triangle's plane, without the lights.
 fn beside_metal(first: u32, direction: vec3f) -> vec3f {
     let number = u32(-1.0f - corners[first].w);
     let roots = vec3f((vec3u(number) >> vec3u(0u, 7u, 14u)) & vec3u(127u)) / 127.0f;
