@@ -106,12 +106,18 @@ fn local(node: &Node) -> Result<DMat4, String> {
         return Err(format!("it has a matrix and a {other}, which exclude each other; remove one"));
     }
     let last = [matrix[3], matrix[7], matrix[11], matrix[15]];
-    if last != [0.0, 0.0, 0.0, 1.0] {
+    // Programs that multiply matrices leave their rounding there. Written so that NaN fails.
+    let is_affine = last.iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(part, right)| (part - right).abs() <= f32::EPSILON);
+    if !is_affine {
         return Err(format!(
             "its matrix has the last row {last:?}, but must have 0, 0, 0, 1; a node has no perspective"
         ));
     }
-    Ok(DMat4::from_cols_array(&matrix.map(f64::from)))
+    let mut matrix = DMat4::from_cols_array(&matrix.map(f64::from));
+    for (column, right) in [0.0, 0.0, 0.0, 1.0].into_iter().enumerate() {
+        matrix.col_mut(column).w = right;
+    }
+    Ok(matrix)
 }
 
 /// Whether a quaternion is no rotation: it has no length.

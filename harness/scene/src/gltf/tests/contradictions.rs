@@ -16,6 +16,10 @@ fn a_node_has_a_matrix_or_its_parts() {
         let mut matrix = identity.map(f64::from);
         matrix[place] += 0.5;
         refused("/nodes/0", json!({"mesh": 0, "matrix": matrix}), "node 0: its matrix has the last row");
+        // The rounding of a product of matrices.
+        matrix[place] = identity[place] as f64 + 1e-8;
+        let scene = load_changed(|d| d["nodes"][0] = json!({"mesh": 0, "matrix": matrix})).unwrap();
+        assert_eq!(only_mesh(&scene).positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
     }
 }
 
