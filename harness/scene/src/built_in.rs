@@ -4,7 +4,7 @@ use super::{Scene, SceneError};
 use list::{ALIASES, BUILT_IN, named, names};
 
 mod cut;
-mod framing;
+pub(crate) mod framing;
 pub(crate) mod list;
 mod materials;
 mod pave;

@@ -9,7 +9,7 @@ use crate::{Camera, Lacking, Object, Scene};
 pub(super) const VERTICAL_FOV: f32 = 0.47;
 
 /// Builds a scene without lights whose camera sees all `objects` from the direction `toward_eye`.
-pub(super) fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
+pub(crate) fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     let camera = Camera::framing(vertices(&objects), toward_eye, VERTICAL_FOV);
     Scene {
         name: name.to_owned(),

@@ -1,26 +1,19 @@
 use glam::Vec3;
 
 use super::*;
+use crate::built_in::framing::framed;
 use crate::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
 use crate::surfaces::{sphere, torus};
-use crate::{Averaging, Camera, Coverage, Lacking, Material, Mesh};
+use crate::{Averaging, Coverage, Material, Mesh};
 
 fn brilliant() -> Mesh {
     round_brilliant(&BrilliantParameters::TOLKOWSKY).unwrap().to_mesh(Averaging::Angle)
 }
 
 fn scene(objects: Vec<Object>) -> Scene {
-    let camera = Camera::framing(crate::object::vertices(&objects), Vec3::Z, 0.5);
-    Scene {
-        name: "ring".to_owned(),
-        objects,
-        lights: Vec::new(),
-        light_radii: Vec::new(),
-        camera,
-        lacking: Lacking::default(),
-    }
+    framed("ring", objects, Vec3::Z)
 }
 
 fn plastic(name: &str) -> Material {

@@ -1,7 +1,8 @@
 use super::*;
+use crate::built_in::framing::framed;
 use crate::convex::planes_of_convex;
 use crate::cuts::{BrilliantParameters, StepCutParameters, octahedron, round_brilliant, step_cut};
-use crate::{Averaging, Camera, Lacking, Material, Preset};
+use crate::{Averaging, Material, Preset};
 use glam::{DMat4, DQuat, DVec3, Vec3};
 
 fn cuts() -> [Mesh; 3] {
@@ -34,15 +35,7 @@ fn diamond() -> Material {
 }
 
 fn scene(objects: Vec<Object>) -> Scene {
-    let camera = Camera::framing(crate::object::vertices(&objects), Vec3::Z, 0.5);
-    Scene {
-        name: "ring".to_owned(),
-        objects,
-        lights: Vec::new(),
-        light_radii: Vec::new(),
-        camera,
-        lacking: Lacking::default(),
-    }
+    framed("ring", objects, Vec3::Z)
 }
 
 fn joined(meshes: &[Mesh]) -> Mesh {
