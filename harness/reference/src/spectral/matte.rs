@@ -59,10 +59,11 @@ impl Mattes {
         Some(color * self.sent_by(matte, hit.place, hit.normal, point, paint))
     }
 
-    /// Returns the normal at a point of a matte body's or a metal's face; `flat` is the face's own.
-    pub(super) fn normal(&self, place: Place, flat: DVec3, point: DVec3) -> DVec3 {
+    /// Returns the normal at a point of a matte body's or a metal's face, with the slopes of its image; `flat` is the face's own.
+    pub(super) fn normal(&self, place: Place, flat: DVec3, point: DVec3, paint: Option<&Paint>) -> DVec3 {
         let matte = self.bodies.get(place.body).and_then(Option::as_ref);
-        matte.and_then(|matte| matte.faces.get(place.face)).map_or(flat, |face| face.normal(point, flat))
+        let normal = matte.and_then(|matte| matte.faces.get(place.face)).map_or(flat, |face| face.normal(point, flat));
+        paint.map_or(normal, |paint| paint.bent(place, point, normal))
     }
 
     /// Returns the irradiance of each light at a point, perpendicular to its direction.
@@ -87,8 +88,7 @@ impl Mattes {
     }
 
     fn sent_by(&self, matte: &Matte, place: Place, flat: DVec3, point: DVec3, paint: Option<&Paint>) -> DVec3 {
-        let normal = matte.faces.get(place.face).map_or(flat, |face| face.normal(point, flat));
-        let normal = paint.map_or(normal, |paint| paint.bent(place, point, normal));
+        let normal = self.normal(place, flat, point, paint);
         let irradiance = harmonics::irradiance(&self.around, normal) + light::irradiance(&self.lights, point, normal);
         matte.reflectance * irradiance
     }

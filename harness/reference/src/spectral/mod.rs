@@ -344,8 +344,7 @@ impl<'scene> Job<'scene> {
                 bodies,
                 order: Order::of(&scene.objects),
                 lights: if settings.lights { lights(scene) } else { Vec::new() },
-                is_random: surfaces.iter().any(|surface| surface.alpha > 0.0 || surface.is_metal && !surface.is_mirror)
-                    || settings.scatterers.iter().any(Option::is_some),
+                is_random: surfaces.iter().any(Surface::is_rough) || settings.scatterers.iter().any(Option::is_some),
                 scatterers: settings.scatterers,
                 surfaces,
                 environment: settings.environment,
@@ -423,8 +422,6 @@ fn surface(object: &Object) -> Surface {
         alpha: f64::from(material.facet_slope()),
         painted: Painted::of(material),
         is_partly_clear: is_partly_clear(object),
-        is_metal: material.is_metal(),
-        is_mirror: material.roughness == 0.0,
         f0: if material.is_metal() { material.base_color.as_dvec3() } else { DVec3::ZERO },
     }
 }

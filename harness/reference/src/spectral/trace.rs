@@ -50,15 +50,20 @@ pub(super) struct Surface {
     pub(super) painted: Painted,
     /// Whether a share of the light does not enter, somewhere.
     pub(super) is_partly_clear: bool,
-    /// Whether a share of it is a metal's, somewhere.
-    pub(super) is_metal: bool,
-    /// Whether it is polished everywhere.
-    pub(super) is_mirror: bool,
     /// Share of light that its metal reflects head on, without images.
     pub(super) f0: DVec3,
 }
 
 impl Surface {
+    /// Whether light goes one of several ways from it.
+    pub(super) fn is_rough(&self) -> bool {
+        self.alpha > 0.0 || self.is_metal() && self.painted.metal_alpha > 0.0
+    }
+
+    fn is_metal(&self) -> bool {
+        self.painted.metallic > 0.0
+    }
+
     /// Returns the factor of the base colour for light that passes.
     fn color(&self) -> DVec3 {
         if self.is_opaque { DVec3::ONE } else { self.painted.color }
@@ -201,7 +206,7 @@ impl<'scene> Surroundings<'scene> {
         }
         let ray = Ray::of_eye(eye, direction, Within::default());
         let surface = self.surfaces[hit.place.body];
-        if surface.alpha > 0.0 || surface.is_partly_clear || surface.is_metal || self.scatterer(&hit).is_some() {
+        if surface.alpha > 0.0 || surface.is_partly_clear || surface.is_metal() || self.scatterer(&hit).is_some() {
             return Some(Primary::FromEye(ray));
         }
         let arrival = self.arrive(&ray, hit, Way::In, DVec3::ONE)?;
@@ -362,12 +367,11 @@ impl<'scene> Surroundings<'scene> {
     fn reflect(&self, arrival: &Arrival, outcome: &mut Outcome, random: &mut Xoshiro256PlusPlus) -> Option<Ray> {
         let Arrival { surface, point, direction, place, .. } = *arrival;
         let Painted { color, clear, metallic, metal_alpha } = surface.painted;
-        if !surface.is_metal || metallic == 0.0 {
+        if !surface.is_metal() {
             return None;
         }
         let mattes = self.bodies.mattes();
-        let given = mattes.normal(place, arrival.normal, point);
-        let given = self.bodies.paint(place).map_or(given, |paint| paint.bent(place, point, given));
+        let given = mattes.normal(place, arrival.normal, point, self.bodies.paint(place));
         let normal = if given.dot(direction) < 0.0 { given } else { arrival.normal };
         let (f0, throughput) = (color * surface.f0, (1.0 - clear) * metallic * arrival.throughput);
         if metal_alpha == 0.0 {

@@ -11,8 +11,6 @@ const POLISHED: Surface = Surface {
     alpha: 0.0,
     painted: Painted { color: DVec3::ONE, clear: 1.0, metallic: 0.0, metal_alpha: 0.0 },
     is_partly_clear: false,
-    is_metal: false,
-    is_mirror: true,
     f0: DVec3::ZERO,
 };
 
