@@ -67,7 +67,8 @@ fn place(mesh: &Mesh) -> usize {
     std::ptr::from_ref(mesh).addr()
 }
 
-fn key(mesh: &Mesh) -> u64 {
+/// Returns a hash of a mesh: of its positions, normals and triangles.
+pub(crate) fn key(mesh: &Mesh) -> u64 {
     let held = KEYS.with_borrow(|keys| keys.get(&place(mesh)).copied());
     if let Some(Some(known)) = held {
         return known;

@@ -1,7 +1,7 @@
 //! How much of the light that a convex stone sends to the eye comes from other clear bodies.
 
 use crate::among::seen;
-use crate::casting::bounds;
+use crate::remembered::key;
 use crate::shape::is_convex;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use lapidary_bvh_trace::traversal;
@@ -34,9 +34,9 @@ pub(crate) fn share_of_others(object: &Object, scene: &Scene, size: [u32; 2]) ->
 /// Returns the shares of all objects. A scene is planned several times for one picture, so that the last ones are kept.
 fn shares(scene: &Scene, size: [u32; 2]) -> Arc<[f32]> {
     static LAST: Mutex<Option<(u64, Arc<[f32]>)>> = Mutex::new(None);
-    let key = fingerprint(scene, size);
+    let fingerprint = fingerprint(scene, size);
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, shares)) = last().as_ref().filter(|(known, _)| *known == key) {
+    if let Some((_, shares)) = last().as_ref().filter(|(known, _)| *known == fingerprint) {
         return Arc::clone(shares);
     }
     let all = All::of(scene);
@@ -71,24 +71,22 @@ fn shares(scene: &Scene, size: [u32; 2]) -> Arc<[f32]> {
         if sum.all > 0.0 { sum.of_clear / sum.all } else { 0.0 }
     };
     let shares: Arc<[f32]> = scene.objects.iter().map(share).collect();
-    *last() = Some((key, Arc::clone(&shares)));
+    *last() = Some((fingerprint, Arc::clone(&shares)));
     shares
 }
 
-/// Returns a hash of what shares follow from. Of a mesh its box, its size and the sum of its corners stand in for all corners.
+/// Returns a hash of what shares follow from.
 fn fingerprint(scene: &Scene, size: [u32; 2]) -> u64 {
     let mut hasher = DefaultHasher::new();
     let Camera { eye, target, up, vertical_fov } = scene.camera;
     size.hash(&mut hasher);
-    let mut add = |vector: Vec3| vector.to_array().map(f32::to_bits).hash(&mut hasher);
-    [eye, target, up, Vec3::splat(vertical_fov)].into_iter().for_each(&mut add);
+    for vector in [eye, target, up, Vec3::splat(vertical_fov)] {
+        vector.to_array().map(f32::to_bits).hash(&mut hasher);
+    }
     for object in &scene.objects {
-        let box_ = bounds(object);
-        let sum: DVec3 = object.mesh.positions.iter().map(|position| position.as_dvec3()).sum();
         let material = &object.material;
-        let kind = f32::from(u8::from(material.is_clear())) + 2.0 * f32::from(u8::from(material.is_thin_wall()));
-        let counts = Vec3::new(object.mesh.triangle_count() as f32, kind, material.ior);
-        [box_.min, box_.max, sum.as_vec3(), counts].into_iter().for_each(&mut add);
+        [key(&object.mesh), key(object.shape())].hash(&mut hasher);
+        (material.is_clear(), material.is_thin_wall(), material.ior.to_bits()).hash(&mut hasher);
     }
     hasher.finish()
 }
