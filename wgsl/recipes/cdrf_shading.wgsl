@@ -594,16 +594,14 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normals: CdrfNormals, 
     return received;
 }
 
-// Radiance that the surface reflects from all lights towards the eye, without spreading it. `color` is a metal's.
+// Radiance that the surface reflects from all lights towards the eye, without spreading it.
 fn cdrf_highlights(
-    position: vec3f, normals: CdrfNormals, toward_eye: vec3f, gloss: CdrfGloss, color: vec3f
+    position: vec3f,
+    normals: CdrfNormals,
+    toward_eye: vec3f,
+    gloss: CdrfGloss,
+    metal: Metal,  //+metal
 ) -> vec3f {
-    //+metal {
-    var metal = Metal(vec3f(0.0f), 0.0f, vec3f(0.0f), vec3f(0.0f));
-    if (EFFECT_METAL) {
-        metal = metal_seen(color, gloss.alpha, dot(normals.sharp, toward_eye));
-    }
-    //+metal }
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
@@ -666,8 +664,11 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     if (EFFECT_REFLECTION) {
         radiance = reflection_over(inside, normals.sharp, toward_eye, material.index, gloss.alpha);
     }
+    //+metal {
+    var metal = Metal(vec3f(0.0f), 0.0f, vec3f(0.0f), vec3f(0.0f));
+    //+metal }
     if (EFFECT_METAL) {
-        let metal = metal_seen(base_color, gloss.alpha, dot(normals.sharp, toward_eye));
+        metal = metal_seen(base_color, gloss.alpha, dot(normals.sharp, toward_eye));
         let mirrored = reflect(-toward_eye, normals.sharp);
         var around = metal_surroundings(mirrored, gloss.alpha);
         if (EFFECT_REFLECTION) {
@@ -678,7 +679,13 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     }
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
-            radiance += cdrf_highlights(input.position, normals, toward_eye, gloss, base_color);
+            radiance += cdrf_highlights(
+                input.position,
+                normals,
+                toward_eye,
+                gloss,
+                metal,  //+metal
+            );
         }
     }
     if (EFFECT_COVERAGE) {
