@@ -8,7 +8,7 @@ use super::shape;
 use super::thickness::Thickness;
 use super::through;
 use crate::request::Scattering;
-use crate::{Quality, Request, Rung};
+use crate::{Outside, Quality, Request, Rung};
 use lapidary_scene::{Object, Scene, Shape};
 
 /// Triangles of a scene up to which copies are drawn as bodies of their own: of more, the corners are beyond a buffer that every
@@ -64,7 +64,7 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     // A setting is met where light leaves the stone, unless time is no matter.
     let shared = || match request.quality {
         Quality::Best => among::shares_space(object, scene),
-        Quality::Fast | Quality::Good => among::reaches_into(object, scene),
+        Quality::Fast | Quality::Good => among::reaches_into(object, scene, meets(object, scene, request)),
     };
     if inside
         && has(Effect::Nested)
@@ -111,12 +111,19 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return None;
     }
     let reason = among::beside(object, scene, request.size)?;
-    // What leaves a convex body is looked for by the effect `around` alone, to which others cover all that is behind them.
-    let meets = || {
-        let lights = !scene.lights.is_empty() && has(Effect::Light);
-        among::fits_around(object.copies.is_some(), false, lights) && !scene.objects.iter().any(among::is_sheer)
-    };
-    (!(walks && meets())).then_some(reason)
+    (!(walks && meets(object, scene, request))).then_some(reason)
+}
+
+/// Whether what leaves a convex body can be looked for by the effect `around` alone, to which others cover all that is behind them,
+/// and what rays inside meet by the effect `nested`.
+fn meets(object: &Object, scene: &Scene, request: &Request<'_>) -> bool {
+    let has = |effect| !request.without.has(effect);
+    let lights = !scene.lights.is_empty() && has(Effect::Light);
+    request.quality == Quality::Good
+        && request.outside.is_none_or(|outside| outside == Outside::Triangles)
+        && has(Effect::Around)
+        && among::fits_around(object.copies.is_some(), false, lights)
+        && !scene.objects.iter().any(among::is_sheer)
 }
 
 /// Whether a clear body with an inside may be drawn by the planes of its facets where time counts.

@@ -285,7 +285,7 @@ impl Note {
             | Self::LampInside { .. }
             | Self::Unmarked(..)
             | Self::NothingGuessed
-            | Self::Stones(StoneNote::TooLarge { .. })
+            | Self::Stones(StoneNote::TooLarge { .. } | StoneNote::AsModelled { .. })
             | Self::NotClear { .. } => Gravity::LeftOut,
             Self::Black { .. } | Self::ClipsToWhite { .. } => Gravity::Exposure,
             Self::StoppedEarly { .. }

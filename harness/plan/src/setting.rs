@@ -13,13 +13,17 @@ const DEEPEST: f64 = 0.25;
 const TOUCHES: f64 = 2e-5;
 
 /// Whether `other` is opaque or a cut stone, and reaches into a convex stone, or any of its copies, no deeper than a setting does:
-/// light inside that would meet it there meets it where it leaves the stone.
-pub(crate) fn holds(other: &Object, stone: &Object) -> bool {
+/// light inside that would meet it there meets it where it leaves the stone. If rays inside meet opaque bodies, `met`, these may
+/// reach as deep as they do.
+pub(crate) fn holds(other: &Object, stone: &Object, met: bool) -> bool {
     static FOUND: Remembered<bool> = Remembered::new();
     let material = &other.material;
+    let is_opaque = !material.is_clear() && !material.scatters();
+    if is_opaque && met {
+        return shape::is_convex(stone);
+    }
     let is_cut = material.has_clear_inside() && shape::is_convex(other) && !shape::is_smooth(other);
-    let may = is_cut || !material.is_clear() && !material.scatters();
-    may && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other, DEEPEST))
+    (is_cut || is_opaque) && FOUND.of_both(&stone.mesh, &other.mesh, |_, other| stays_out(stone, other, DEEPEST))
 }
 
 /// Whether `other` is not clear, and a part of it lies within a convex stone or one of its copies.
@@ -97,12 +101,14 @@ mod tests {
         let girdle = stone.mesh.positions.iter().copied().max_by(|a, b| a.x.total_cmp(&b.x)).unwrap();
         let Vec3 { x, y, .. } = girdle;
         let [x, y] = [x, y].map(f64::from);
-        assert!(holds(&bar([0.1, 0.5, 0.1], [x, y, 0.0]), &stone));
-        assert!(holds(&bar([0.1, 0.5, 0.1], [3.0 * x, y, 0.0]), &stone));
+        assert!(holds(&bar([0.1, 0.5, 0.1], [x, y, 0.0]), &stone, false));
+        assert!(holds(&bar([0.1, 0.5, 0.1], [3.0 * x, y, 0.0]), &stone, false));
         // All corners of the rod lie outside.
-        assert!(!holds(&bar([5.0, 0.05, 0.05], [0.0, y - 0.2, 0.0]), &stone));
-        assert!(!holds(&bar([0.05; 3], [0.0, y - 0.2, 0.0]), &stone));
-        let clear = Object { material: stone.material.clone(), ..bar([0.1, 0.5, 0.1], [x, y, 0.0]) };
-        assert!(!holds(&clear, &stone));
+        for deep in [bar([5.0, 0.05, 0.05], [0.0, y - 0.2, 0.0]), bar([0.05; 3], [0.0, y - 0.2, 0.0])] {
+            assert!(!holds(&deep, &stone, false) && holds(&deep, &stone, true));
+            // A body that is clear, but not cut.
+            let clear = Object { material: stone.material.clone(), ..deep };
+            assert!(!holds(&clear, &stone, true));
+        }
     }
 }

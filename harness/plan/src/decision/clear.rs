@@ -93,7 +93,7 @@ impl Case<'_> {
         let shares = if self.is_among() {
             among::shares_space(self.object, self.scene)
         } else {
-            among::reaches_into(self.object, self.scene)
+            among::reaches_into(self.object, self.scene, false)
         };
         let own = shares.map(|other| format!("{} shares space with {}", self.object.name, other.name));
         // Light goes through all clear bodies, so that any of them calls for it. Few vertices are looked at: here boxes that

@@ -40,10 +40,18 @@ pub enum NotRecovered {
     /// The planes enclose nothing.
     #[error("is no solid of its facets: they leave a side open")]
     Open,
-    /// Tolerances do not agree on the facets, and rounding could turn one far.
-    #[error("has no certain facets: one could be turned by {:.0}°", angle.to_degrees())]
-    Uncertain {
-        /// The angle in radians.
-        angle: f64,
+    /// Tolerances do not agree on the facets, which are not those of the mesh.
+    #[error("has no certain facets: {:.0} % of its area would be turned by more than 5°", 100.0 * share)]
+    Turned {
+        /// Share of the mesh's area.
+        share: f64,
     },
+}
+
+impl NotRecovered {
+    /// Whether the mesh is nearly convex, with facets.
+    #[must_use]
+    pub fn is_nearly(&self) -> bool {
+        matches!(self, Self::Dented { .. } | Self::Unlike { .. } | Self::Turned { .. })
+    }
 }

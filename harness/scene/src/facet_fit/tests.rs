@@ -193,11 +193,16 @@ fn dents_that_were_modelled_are_no_rounding() {
         let mut draws = Draws::of_row(41, row);
         let mut dented = brilliant.clone();
         for position in &mut dented.positions {
-            *position += Vec3::from_array([0; 3].map(|_| draws.between(-1.0, 1.0))) * (4e-3 * size) as f32;
+            *position += Vec3::from_array([0; 3].map(|_| draws.between(-1.0, 1.0))) * (8e-3 * size) as f32;
         }
         match recover(&dented) {
             Err(_) => kept += 1,
-            Ok(found) => assert!(found.is_steady || found.uncertainty() <= UNSTEADY, "{}", found.uncertainty()),
+            Ok(found) => {
+                // The hull of such corners has hardly any but triangles for facets.
+                let planes: Vec<Plane> = found.facets.iter().map(|facet| facet.plane).collect();
+                let points: Vec<DVec3> = dented.positions.iter().map(|position| position.as_dvec3()).collect();
+                assert!(found.is_steady || turned(&dented, &points, &planes) <= TURNED);
+            }
         }
     }
     assert!(kept >= 6, "{kept}");

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::facet_fit::Recovered;
+use crate::facet_fit::{NotRecovered, Recovered};
 use crate::shells::{MOST_TRIANGLES, Mends};
 
 /// A change to clear bodies. Each names the first body concerned, by the name in the file, and how many there are.
@@ -65,6 +65,15 @@ pub enum StoneNote {
         /// Number of bodies whose facets rounding may have parted: they are too small for its step.
         unsteady: usize,
     },
+    /// Bodies whose facets were not made exact, though they are nearly convex.
+    AsModelled {
+        /// Name of the first body.
+        first: String,
+        /// Number of bodies.
+        objects: usize,
+        /// Why the first one was not.
+        why: NotRecovered,
+    },
     /// Meshes that are too large to be looked at.
     TooLarge {
         /// Name of the first body.
@@ -123,7 +132,8 @@ pub(super) fn add(notes: &mut Vec<StoneNote>, new: StoneNote) {
                 *unsteady += more_unsteady;
                 return;
             }
-            (StoneNote::TooLarge { objects, .. }, StoneNote::TooLarge { .. }) => {
+            (StoneNote::TooLarge { objects, .. }, StoneNote::TooLarge { .. })
+            | (StoneNote::AsModelled { objects, .. }, StoneNote::AsModelled { .. }) => {
                 *objects += 1;
                 return;
             }
@@ -205,6 +215,13 @@ impl fmt::Display for StoneNote {
                     uncertainty.to_degrees(),
                     moved,
                     100.0 * volume
+                )
+            }
+            Self::AsModelled { first, objects, why } => {
+                write!(
+                    f,
+                    "{}: nearly convex, but drawn as modelled, at several times the time: {why}",
+                    named(first, *objects)
                 )
             }
             Self::TooLarge { first, objects } => write!(

@@ -2,7 +2,7 @@
 
 use super::note::{self, StoneNote};
 use crate::convex::planes_of_convex;
-use crate::facet_fit::{Recovered, recover};
+use crate::facet_fit::{NotRecovered, Recovered, recover};
 use crate::normals::{Normals, is_smooth};
 use crate::{Copies, Mesh, Object, Scene};
 
@@ -21,7 +21,14 @@ impl Scene {
             if !object.material.has_clear_inside() || is_painted {
                 continue;
             }
-            let Some(recovered) = exact(object.shape(), object.material.normals) else { continue };
+            let recovered = match exact(object.shape(), object.material.normals) {
+                Some(Ok(recovered)) => recovered,
+                Some(Err(why)) if why.is_nearly() => {
+                    note::add(&mut notes, StoneNote::AsModelled { first: object.name.clone(), objects: 1, why });
+                    continue;
+                }
+                _ => continue,
+            };
             note::add(&mut notes, StoneNote::recovered(&object.name, &recovered));
             match &object.copies {
                 None => object.mesh = recovered.mesh,
@@ -35,14 +42,18 @@ impl Scene {
     }
 }
 
-/// Returns the stone of a mesh, if it is a cut one and not convex already.
-fn exact(mesh: &Mesh, normals: Normals) -> Option<Recovered> {
+/// Returns the stone of a mesh, or why its facets are not recovered; `None` if it is no cut one, or convex already.
+fn exact(mesh: &Mesh, normals: Normals) -> Option<Result<Recovered, NotRecovered>> {
     if normals == Normals::File || mesh.indices.is_empty() || planes_of_convex(mesh).is_some() {
         return None;
     }
-    let recovered = recover(mesh).ok()?;
+    let recovered = match recover(mesh) {
+        Ok(recovered) => recovered,
+        Err(why) => return Some(Err(why)),
+    };
     // Averaged over all edges, the normals of a cut stone are told from those of a round body by its edges.
-    (normals == Normals::Facets || shows_facets(mesh, &recovered) || !is_smooth(&recovered.mesh)).then_some(recovered)
+    (normals == Normals::Facets || shows_facets(mesh, &recovered) || !is_smooth(&recovered.mesh))
+        .then_some(Ok(recovered))
 }
 
 /// Whether the normals of a mesh are those of the facets that were recovered.

@@ -87,8 +87,8 @@ fn what_is_not_covered_is_seen() {
     };
     let blend = |share| Some(Coverage { share, cutoff: None });
     let mask = |share| Some(Coverage { share, cutoff: Some(0.5) });
-    for (coverage, share) in [(None, 1.0), (blend(0.25), 0.25), (blend(0.75), 0.75), (mask(0.4), 0.0), (mask(0.6), 1.0)]
-    {
+    let covers = [(None, 1.0), (blend(0.25), 0.25), (blend(0.75), 0.75), (mask(0.4), 0.0), (mask(0.6), 1.0)];
+    for (coverage, share) in lapidary_testing::sampled(covers, 3) {
         let expected = share * color.as_dvec3() + (1.0 - share) * 0.5;
         let of_scattering: fn(Object) -> Vec<Object> = |screen| {
             let far = Material { sigma0: Some(Vec3::ONE), ..matte(Vec3::splat(0.5)) };
