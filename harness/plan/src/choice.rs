@@ -95,10 +95,11 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     }
     let walks = inside && walks(object, request);
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
-        let share = walks.then(|| through::share_of_others(object, scene, request.size));
-        if share.is_none_or(|share| share > through::MOST) {
-            let share = share
-                .map_or_else(String::new, |share| format!(", and {} of its light comes from such", percent(share)));
+        let from_others = walks.then(|| through::others(object, scene, request.size));
+        if from_others.is_none_or(|others| !others.is_little) {
+            let share = from_others.map_or_else(String::new, |others| {
+                format!(", and {} of its light comes from such", percent(others.share))
+            });
             return Some(format!("in the view it overlaps {}, which is clear{share}", other.name));
         }
     }

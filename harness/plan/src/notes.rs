@@ -105,7 +105,7 @@ impl Case<'_> {
         }
         let is_alone = is_followed && !rung.is_among() && !self.request.without.has(Effect::Behind);
         if is_alone && among::overlaps(self.object, self.scene, self.request.size).is_some() {
-            let share = through::share_of_others(self.object, self.scene, self.request.size);
+            let share = through::others(self.object, self.scene, self.request.size).share;
             // A share of nothing is nothing left out.
             notes.extend((share > 0.0).then(|| Note::OthersNotSeen { objects: objects.clone(), rung, share }));
         }

@@ -13,7 +13,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Share of a stone's light, from other clear bodies, up to which it may be drawn without them: a hundredth costs a FLIP of about
 /// .01 (docs/gem_scene.md), and .05 is what the quicker rung may cost.
-pub(crate) const MOST: f32 = 0.05;
+const MOST: f32 = 0.05;
+/// The same of the light of a whole picture, from all those stones together that have a greater share themselves: stones that are
+/// small in it.
+const MOST_OF_PICTURE: f32 = 0.02;
 /// Rays along each side of the picture of a stone, and of each of several copies: enough for a share within a few hundredths.
 const RAYS: u32 = 12;
 const RAYS_OF_COPY: u32 = 6;
@@ -24,55 +27,81 @@ const HITS: u32 = 8;
 /// Share of the way from the eye by which a body has to be nearer than the stone to hide it.
 const NEARER: f32 = 1e-4;
 
-/// Returns the share of an object's light, as the eye sees it in a picture of this size, that comes from other clear bodies or
-/// from other copies; 0 for an object that is no clear convex stone, or is not seen.
-pub(crate) fn share_of_others(object: &Object, scene: &Scene, size: [u32; 2]) -> f32 {
-    let number = scene.objects.iter().position(|other| std::ptr::eq(other, object));
-    number.map_or(0.0, |number| shares(scene, size)[number])
+/// What of a stone's light comes from other clear bodies or from other copies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Others {
+    /// Share of the light, as the eye sees it; 0 for an object that is no clear convex stone, or is not seen.
+    pub(crate) share: f32,
+    /// Whether it is so little that the stone may be drawn without them.
+    pub(crate) is_little: bool,
 }
 
-/// Returns the shares of all objects. A scene is planned several times for one picture, so that the last ones are kept.
-fn shares(scene: &Scene, size: [u32; 2]) -> Arc<[f32]> {
-    static LAST: Mutex<Option<(u64, Arc<[f32]>)>> = Mutex::new(None);
+/// Returns what of an object's light comes from others in a picture of this size.
+pub(crate) fn others(object: &Object, scene: &Scene, size: [u32; 2]) -> Others {
+    let number = scene.objects.iter().position(|other| std::ptr::eq(other, object));
+    number.map_or_else(Others::default, |number| all(scene, size)[number])
+}
+
+/// Returns the same of all objects. A scene is planned several times for one picture, so that the last ones are kept.
+fn all(scene: &Scene, size: [u32; 2]) -> Arc<[Others]> {
+    static LAST: Mutex<Option<(u64, Arc<[Others]>)>> = Mutex::new(None);
     let fingerprint = fingerprint(scene, size);
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, shares)) = last().as_ref().filter(|(known, _)| *known == fingerprint) {
-        return Arc::clone(shares);
+    if let Some((_, others)) = last().as_ref().filter(|(known, _)| *known == fingerprint) {
+        return Arc::clone(others);
     }
     let all = All::of(scene);
     let matrix = clip_from_world(scene, size[0], size[1]);
     let world_from_clip = matrix.as_dmat4().inverse();
-    let share = |object: &Object| {
-        if !object.material.has_clear_inside() || !is_convex(object) {
-            return 0.0;
-        }
+    let share_and_area = |object: &Object| {
         let mut sum = Sum::default();
-        let (rays, copies) = match &object.copies {
-            None => (RAYS, vec![object.mesh.clone()]),
+        if !object.material.has_clear_inside() || !is_convex(object) {
+            return (0.0, 0.0);
+        }
+        let (rays, step, copies) = match &object.copies {
+            None => (RAYS, 1, vec![object.mesh.clone()]),
             Some(copies) => {
                 let step = copies.places.len().div_ceil(MOST_COPIES).max(1);
                 let places = copies.places.iter().step_by(step);
-                (RAYS_OF_COPY, places.map(|place| copies.shape.transformed(place.transform())).collect())
+                (RAYS_OF_COPY, step, places.map(|place| copies.shape.transformed(place.transform())).collect())
             }
         };
+        let mut area = 0.0;
         for mesh in copies {
             let bounds = Bounds::of(mesh.positions.iter().copied());
             let Some((least, most)) = seen(bounds, matrix) else { continue };
             let Some(stone) = Stone::of(&mesh, object.material.ior) else { continue };
+            let mut hits = 0;
             for number in 0..rays * rays {
                 let place = Vec2::new((number % rays) as f32 + 0.5, (number / rays) as f32 + 0.5) / rays as f32;
                 let place = least + place * (most - least);
                 // The depth is that of a plane in the middle of the scene's.
                 let point = world_from_clip.project_point3(place.extend(0.5).as_dvec3());
                 let direction = (point - scene.camera.eye.as_dvec3()).normalize_or(DVec3::NEG_Z);
-                stone.look(&all, &scene.camera, direction, &mut sum);
+                hits += u32::from(stone.look(&all, &scene.camera, direction, &mut sum));
             }
+            // The picture is 2 wide and 2 high.
+            area += 0.25 * (most - least).element_product() * hits as f32 / (rays * rays) as f32;
         }
-        if sum.all > 0.0 { sum.of_clear / sum.all } else { 0.0 }
+        (if sum.all > 0.0 { sum.of_clear / sum.all } else { 0.0 }, step as f32 * area)
     };
-    let shares: Arc<[f32]> = scene.objects.iter().map(share).collect();
-    *last() = Some((fingerprint, Arc::clone(&shares)));
-    shares
+    let others = little(&scene.objects.iter().map(share_and_area).collect::<Vec<_>>());
+    *last() = Some((fingerprint, Arc::clone(&others)));
+    others
+}
+
+/// Decides which stones have little light from others, by their shares and their areas in the picture as shares of it.
+fn little(found: &[(f32, f32)]) -> Arc<[Others]> {
+    let mut others: Vec<Others> = found.iter().map(|&(share, _)| Others { share, is_little: share <= MOST }).collect();
+    let of_picture = |number: &usize| found[*number].0 * found[*number].1;
+    let mut more: Vec<usize> = (0..found.len()).filter(|&number| !others[number].is_little).collect();
+    more.sort_by(|one, other| of_picture(one).total_cmp(&of_picture(other)));
+    let mut sum = 0.0;
+    for number in more {
+        sum += of_picture(&number);
+        others[number].is_little = sum <= MOST_OF_PICTURE;
+    }
+    others.into()
 }
 
 /// Returns a hash of what shares follow from.
@@ -152,12 +181,12 @@ impl Stone {
         Some(Self { centre, planes: Convex::about(centre, mesh)?.planes, index })
     }
 
-    /// Adds what a ray from the eye sees of the stone, unless another body hides it.
-    fn look(&self, all: &All, camera: &Camera, direction: DVec3, sum: &mut Sum) {
+    /// Adds what a ray from the eye sees of the stone, unless another body hides it; returns whether it sees it.
+    fn look(&self, all: &All, camera: &Camera, direction: DVec3, sum: &mut Sum) -> bool {
         let direction = direction.as_vec3();
-        let Some((distance, mut face)) = self.entry(camera.eye - self.centre, direction) else { return };
+        let Some((distance, mut face)) = self.entry(camera.eye - self.centre, direction) else { return false };
         if all.met(camera.eye, direction).is_some_and(|(hit, _)| hit < (1.0 - NEARER) * distance) {
-            return;
+            return false;
         }
         let mut position = camera.eye - self.centre + distance * direction;
         let normal = self.planes[face as usize].truncate();
@@ -173,7 +202,7 @@ impl Stone {
         let mut light = 1.0 - reflectance;
         for _ in 0..HITS {
             let hit = convex_trace::trace(&self.planes, position, inside, face);
-            let Some(plane) = self.planes.get(hit.face as usize) else { return };
+            let Some(plane) = self.planes.get(hit.face as usize) else { break };
             face = hit.face;
             position = convex_trace::point(position, inside, hit.distance, *plane);
             let normal = plane.truncate();
@@ -185,6 +214,7 @@ impl Stone {
             light *= reflectance;
             inside = lapidary_refraction::reflect(inside, normal);
         }
+        true
     }
 
     /// Returns where a ray from outside enters, and through which plane.

@@ -23,7 +23,7 @@ fn scene(objects: Vec<Object>) -> Scene {
 
 fn share(objects: Vec<Object>) -> f32 {
     let scene = scene(objects);
-    share_of_others(&scene.objects[0], &scene, SIZE)
+    others(&scene.objects[0], &scene, SIZE).share
 }
 
 /// What stands behind a block of index 1 sends as much of its light as it covers of it.
@@ -66,7 +66,7 @@ fn a_cut_stone_is_walked_before_another_and_a_block_of_glass_is_not() {
         scene.camera = Camera { eye: 20.0 * Vec3::Y, target: Vec3::ZERO, up: Vec3::Z, vertical_fov: 0.3 };
         let request = Request { quality, ..Request::of_size(SIZE) };
         let decisions = Decisions::all(&scene, &request);
-        let share = share_of_others(&scene.objects[0], &scene, SIZE);
+        let share = others(&scene.objects[0], &scene, SIZE).share;
         let notes = crate::notes(&scene, &request, &decisions.iter().collect::<Vec<_>>());
         let said = notes.iter().any(|note| note.to_string().contains("overlap it in the view"));
         let walks = !decisions[0].rung.is_among();
@@ -103,4 +103,22 @@ fn copies_in_a_band_are_walked() {
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE }];
     let decisions = of(&scene);
     assert!(!decisions.has(Effect::Around) || !decisions.has(Effect::Light) || decisions.rung.is_among());
+}
+
+/// A stone that is small in the picture may lack more than one that fills it, as long as all such together lack little.
+#[test]
+fn small_stones_may_lack_more_and_all_together_little() {
+    let is_little = |found: &[(f32, f32)]| little(found).iter().map(|others| others.is_little).collect::<Vec<_>>();
+    assert_eq!(is_little(&[(0.05, 1.0), (0.06, 1.0), (0.5, 0.01), (0.0, 0.0)]), [true, false, true, true]);
+    // The least first: .005 + .01, and .015 more are too many.
+    assert_eq!(is_little(&[(0.3, 0.05), (0.1, 0.05), (0.2, 0.05)]), [false, true, true]);
+    // The same scene from near and from far.
+    let pair = || vec![block(1.0, DVec3::ZERO, glass(1.5)), block(3.0, DVec3::new(0.0, 0.0, -6.0), glass(1.5))];
+    let seen_from = |distance: f32| {
+        let mut scene = scene(pair());
+        scene.camera = Camera::upright(distance * Vec3::Z, Vec3::ZERO, 0.3);
+        others(&scene.objects[0], &scene, SIZE)
+    };
+    let (near, far) = (seen_from(20.0), seen_from(200.0));
+    assert!(!near.is_little && far.is_little && far.share > 0.5, "{near:?} {far:?}");
 }
