@@ -36,7 +36,7 @@ pub use drawing::scene_frame::frame;
 pub use error::RenderError;
 pub use frame::{compute, shader};
 pub use picture::displayed::encode;
-pub use picture::{Picture, WalkedPicture, file};
+pub use picture::{BLOOM, Picture, WalkedPicture, bloom, file};
 pub use reference::scatters;
 pub use render::{render, render_means, render_reporting, render_with};
 pub use settings::{
