@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bloom;
 mod drawing;
 mod error;
 pub mod frame;
@@ -32,11 +33,12 @@ mod surface;
 mod timer;
 mod volume;
 
+pub use bloom::{BLOOM, bloom};
 pub use drawing::scene_frame::frame;
 pub use error::RenderError;
 pub use frame::{compute, shader};
 pub use picture::displayed::encode;
-pub use picture::{BLOOM, Picture, WalkedPicture, bloom, file};
+pub use picture::{Picture, WalkedPicture, file};
 pub use reference::scatters;
 pub use render::{render, render_means, render_reporting, render_with};
 pub use settings::{

@@ -1,6 +1,5 @@
 //! Pictures: their pixels, the tiles in which they are drawn, how samples are displayed, and files.
 
-mod bloom;
 pub(crate) mod display;
 pub(crate) mod displayed;
 pub mod file;
@@ -8,6 +7,5 @@ pub(crate) mod formats;
 mod rendered;
 mod tile;
 
-pub use bloom::{BLOOM, bloom};
 pub use rendered::{Picture, WalkedPicture};
 pub(crate) use tile::Tile;

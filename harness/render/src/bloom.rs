@@ -5,7 +5,7 @@
 //! cascaded uniform filters", 1986). The picture's edges reflect, so that every pixel gives away and receives the
 //! same share: no energy is lost or won, and an even picture stays as it is.
 
-use super::Picture;
+use crate::picture::Picture;
 use crate::pixel::display::backdrop;
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_srgb as srgb;
@@ -157,13 +157,10 @@ mod tests {
         let mut line = vec![DVec3::ZERO; 201];
         line[100] = DVec3::ONE;
         for deviation in [3.0, 8.0, 14.0] {
-            let squares = gaussian(&line, [size[0], 1], deviation)
-                .iter()
-                .zip(-100..)
-                .map(|(light, at)| light.x * f64::from(at * at));
-            // Radii are whole: r(r + 1) is within r of the variance asked for.
-            let found: f64 = squares.sum();
-            assert!((found - deviation * deviation).abs() <= deviation, "{found} for {deviation}");
+            let blurred = gaussian(&line, [size[0], 1], deviation);
+            let found: f64 = blurred.iter().zip(-100..).map(|(light, at)| light.x * f64::from(at * at)).sum();
+            // Radii are whole, half a pixel off at most: r(r + 1) is within r* + 3/4 of r*(r* + 1), the variance asked for.
+            assert!((found - deviation * deviation).abs() <= deviation + 0.3, "{found} for {deviation}");
         }
     }
 }
