@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bloom;
 mod drawing;
 mod error;
 pub mod frame;
@@ -32,6 +33,7 @@ mod surface;
 mod timer;
 mod volume;
 
+pub use bloom::{BLOOM, bloom};
 pub use drawing::scene_frame::frame;
 pub use error::RenderError;
 pub use frame::{compute, shader};

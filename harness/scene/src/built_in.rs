@@ -10,6 +10,7 @@ mod materials;
 mod pave;
 pub mod presets;
 mod prisms;
+mod ring;
 mod stone;
 mod translucent;
 mod tray;

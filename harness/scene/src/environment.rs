@@ -4,6 +4,8 @@ use crate::environment_map::EnvironmentMap;
 use glam::{DVec3, UVec2};
 use lapidary_environment::oracle;
 
+mod jeweller;
+
 /// The light around a scene.
 #[derive(Clone, Debug)]
 pub enum Environment {
@@ -11,6 +13,39 @@ pub enum Environment {
     Studio,
     /// A latitude-longitude image.
     Map(EnvironmentMap),
+}
+
+/// An environment that needs no file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BuiltInEnvironment {
+    /// A dim tent with a few lights: the procedural studio of `wgsl/environment.wgsl`.
+    #[default]
+    Studio,
+    /// Softboxes, black flags and rows of small bright lights, as an image.
+    Jeweller,
+}
+
+impl BuiltInEnvironment {
+    /// Each once.
+    pub const ALL: [Self; 2] = [Self::Studio, Self::Jeweller];
+
+    /// Returns the name that a user types.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Studio => "studio",
+            Self::Jeweller => "jeweller",
+        }
+    }
+
+    /// Makes the environment.
+    #[must_use]
+    pub fn make(self) -> Environment {
+        match self {
+            Self::Studio => Environment::Studio,
+            Self::Jeweller => Environment::Map(jeweller::map()),
+        }
+    }
 }
 
 impl Environment {

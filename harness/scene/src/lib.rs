@@ -62,7 +62,7 @@ pub use built_in::presets::{PRESETS, Preset};
 pub use camera::Camera;
 pub use convex::{Convex, Shape};
 pub use copies::{Copies, Place};
-pub use environment::Environment;
+pub use environment::{BuiltInEnvironment, Environment};
 pub use error::SceneError;
 pub use lacking::Lacking;
 pub use lapidary_bvh_trace::Bvh;

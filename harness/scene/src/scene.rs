@@ -2,7 +2,7 @@
 
 use crate::camera::direction;
 use crate::object::vertices;
-use crate::{Bounds, Camera, Lacking, Light, Object};
+use crate::{Bounds, BuiltInEnvironment, Camera, Lacking, Light, Object};
 
 /// Bodies, lights and a camera.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Radii of the lights, by their numbers, as far as they are given: [`Scene::light_radius`].
     pub light_radii: Vec<Option<f32>>,
+    /// Light from far away, unless another is asked for.
+    pub environment: BuiltInEnvironment,
     /// Camera that looks at the bodies.
     pub camera: Camera,
     /// Features that the file asks for and this renderer does not draw, each listed once.

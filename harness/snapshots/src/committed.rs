@@ -128,7 +128,10 @@ impl Committed {
     /// Returns an error as in [`Committed::render`].
     pub fn render_linear(self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
         match self {
-            Self::Shot(shot) => Ok(render::render(gpu, &shot.open()?, &shot.settings(EXR_SIDE))?),
+            Self::Shot(shot) => {
+                let (scene, settings) = shot.drawn(EXR_SIDE)?;
+                Ok(render::render(gpu, &scene, &settings)?)
+            }
             Self::Strip | Self::BesideWalks(_) => self.render(gpu).map(|[_, linear]| linear),
         }
     }
@@ -136,8 +139,10 @@ impl Committed {
 
 /// Renders `shot` at the sizes of its PNG and its EXR.
 pub fn render_shot(gpu: &Gpu, shot: &Shot) -> Result<[Picture; 2], SnapshotError> {
-    let scene = shot.open()?;
-    let render = |side| render::render(gpu, &scene, &shot.settings(side));
+    let render = |side| -> Result<Picture, SnapshotError> {
+        let (scene, settings) = shot.drawn(side)?;
+        Ok(render::render(gpu, &scene, &settings)?)
+    };
     Ok([render(shot.side)?, render(EXR_SIDE)?])
 }
 

@@ -54,7 +54,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 pub(super) const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 57] = [
+pub const SHOTS: [Shot; 58] = [
     Shot {
         paragraph: "Each body by what its material calls for: a table and a stand that are opaque, a diamond with \
             dispersion and a ruby without, a jade ball by curvature, light that diffuses through a paraffin candle and a veined marble \
@@ -70,6 +70,7 @@ pub const SHOTS: [Shot; 57] = [
             BY_MATERIAL,
         ))
     },
+    shot("ring", "A ring of gold, by a jeweller's light", "ring", BY_MATERIAL),
     Shot {
         paragraph: "The exact stone: each ray inside finds its facet by a map of all 73, to eight hits. The default for closed, convex \
             bodies.",
@@ -308,7 +309,14 @@ impl Shot {
         Ok(self.from.map_or_else(|| scene.clone(), |(polar, azimuth)| scene.seen_from(polar, azimuth)))
     }
 
-    /// Returns the settings for a picture with `side` pixels along each side.
+    /// Returns its scene, and the settings for a picture of it in its own environment with `side` pixels along each side.
+    pub fn drawn(&self, side: u32) -> Result<(Scene, Settings), SceneError> {
+        let scene = self.open()?;
+        let settings = Settings { environment: scene.environment.make(), ..self.settings(side) };
+        Ok((scene, settings))
+    }
+
+    /// Returns the settings for a picture in the studio with `side` pixels along each side.
     ///
     /// # Panics
     /// If no rung has its rung's name; the names are compiled in.

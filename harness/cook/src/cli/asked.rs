@@ -1,16 +1,16 @@
 //! Arguments shared by `cook render` and `cook plan`: a scene, and how its objects are drawn.
 
 use super::Failure;
+use super::environment::EnvironmentAsked;
 use super::named::named;
 use super::opened::{Opened, distinct, refuse_twice};
 use lapidary_files::nearest;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
 use lapidary_scene as scene;
-use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_scene::normals::Normals;
-use lapidary_scene::{Environment, Object, PRESETS, Preset, Scene};
-use std::path::PathBuf;
+use lapidary_scene::{Object, PRESETS, Preset, Scene};
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args, Default)]
 pub(super) struct Asked {
@@ -55,9 +55,10 @@ pub(super) struct Asked {
     /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     pub(super) without: Vec<Effect>,
-    /// Latitude-longitude .exr or .hdr image; the procedural studio by default.
-    #[arg(long, value_name = "FILE")]
-    pub(super) environment: Option<PathBuf>,
+    /// Light from far away: studio, jeweller (softboxes, black flags and small bright lights), or a latitude-longitude .exr or
+    /// .hdr image; by default the scene's own, which is the studio but for `ring`.
+    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parse)]
+    pub(super) environment: Option<EnvironmentAsked>,
     /// Camera of the file: its name, its node's name, or its number; the first one by default.
     #[arg(long, value_name = "NAME|N")]
     pub(super) camera: Option<String>,
@@ -107,7 +108,7 @@ impl Asked {
     /// Returns the files that are read.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         let mut files = Scene::sources(&self.scene);
-        files.extend(self.environment.clone());
+        files.extend(self.environment.iter().filter_map(EnvironmentAsked::file).map(Path::to_path_buf));
         files
     }
 
@@ -165,16 +166,9 @@ impl Asked {
     /// environment.
     pub(super) fn settings(&self, opened: &Opened) -> Result<(Settings, Vec<Note>), Failure> {
         let scene = &opened.scene;
-        let mut notes = Vec::new();
-        let environment = match &self.environment {
-            None => Environment::Studio,
-            Some(path) => {
-                let (map, Clamped { pixels, least }) = EnvironmentMap::load_counting(path)?;
-                if pixels > 0 {
-                    notes.push(Note::NegativeRadiance { file: path.display().to_string(), pixels, least });
-                }
-                Environment::Map(map)
-            }
+        let (environment, negative) = match &self.environment {
+            None => (scene.environment.make(), None),
+            Some(asked) => asked.make()?,
         };
         let techniques =
             [(CDRF, Scattering::Cdrf), (OPTICAL_PATH, Scattering::OpticalPath), (DIFFUSION, Scattering::Diffusion)];
@@ -210,7 +204,7 @@ impl Asked {
             ..Settings::of_size(width, height)
         };
         self.refuse_what_is_ignored(scene, &settings)?;
-        Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
+        Ok((Settings { without: Effects::of(&self.without), ..settings }, negative.into_iter().collect()))
     }
 
     /// Refuses a rung or technique that cannot draw any body: the user would believe that it

@@ -1,6 +1,7 @@
 //! `cook corpus`.
 
 use super::asked::{Asked, parse_quality, parse_size};
+use super::environment::EnvironmentAsked;
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_plan::{Decisions, Geometry, Quality};
 use lapidary_render as render;
@@ -8,7 +9,6 @@ use lapidary_render::Settings;
 use lapidary_render::file;
 use lapidary_scene::Scene;
 use lapidary_scene::convex::planes_of_convex;
-use lapidary_scene::environment_map::EnvironmentMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,9 +34,10 @@ pub(super) struct Arguments {
     /// Time budget of each object's technique: fast, good or best; good by default.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
-    /// Latitude-longitude .exr or .hdr image; the procedural studio by default.
-    #[arg(long, value_name = "FILE")]
-    environment: Option<PathBuf>,
+    /// Light from far away: studio (the default), jeweller (softboxes, black flags and small bright lights), or a
+    /// latitude-longitude .exr or .hdr image.
+    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parse)]
+    environment: Option<EnvironmentAsked>,
 }
 
 /// The table of the folder that the pictures go to.
@@ -116,7 +117,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     // Not once for each file.
     if let Some(environment) = &arguments.environment {
-        EnvironmentMap::load_counting(environment)?;
+        environment.make()?;
     }
     if let Some(out) = &arguments.out {
         std::fs::create_dir_all(out).map_err(|error| in_folder(out, &error))?;

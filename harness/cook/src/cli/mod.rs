@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod corpus;
 mod drawn;
+mod environment;
 mod frame;
 mod list;
 mod opened;

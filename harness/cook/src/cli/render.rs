@@ -28,6 +28,10 @@ pub(super) struct Arguments {
     /// F-001.png and so on.
     #[arg(long, value_name = "N", value_parser = number::whole(1..=MOST_PICTURES), help_heading = "Options")]
     turntable: Option<u32>,
+    /// Glow around bright places, for a PNG: the share of light that is spread, above 0 and at most 1; 0.06 where it is left out.
+    /// Nothing but the written picture has it: no error is ever taken of it.
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = DEFAULT_BLOOM, value_parser = parse_share, help_heading = "Options")]
+    bloom: Option<f32>,
     #[command(flatten)]
     reference: Option<Reference>,
     #[command(flatten)]
@@ -94,6 +98,14 @@ impl Reference {
     }
 }
 
+/// [`render::BLOOM`] as a text.
+const DEFAULT_BLOOM: &str = "0.06";
+
+fn parse_share(text: &str) -> Result<f32, String> {
+    let share = text.parse::<f32>().ok().filter(|share| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| "expected a share above 0 and at most 1, such as 0.06; the scene comes before it".to_owned())
+}
+
 fn parse_origin(text: &str) -> Result<Origin, String> {
     named("end of a walk", text, Origin::ALL, Origin::name)
 }
@@ -153,6 +165,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let inputs = || inputs.iter().map(PathBuf::as_path);
     let out = arguments.out.clone().unwrap_or_else(|| default_output(&arguments.drawn.asked.scene, inputs));
     let format = Format::of_path(&out)?;
+    if arguments.bloom.is_some() {
+        refuse_bloom(format, settings.backdrop)?;
+    }
     let size = [settings.width, settings.height];
     let (files, scenes): (Vec<PathBuf>, Box<dyn Iterator<Item = Scene>>) = match arguments.turntable {
         None => (vec![out], Box::new(std::iter::once(scene))),
@@ -165,7 +180,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     // What is told of one picture of a turn holds for all.
     let mut told = false;
     for (scene, out) in scenes.zip(&files) {
-        let picture = draw(context, &scene, &settings)?;
+        let mut picture = draw(context, &scene, &settings)?;
+        if let Some(share) = arguments.bloom {
+            render::bloom(&mut picture, settings.exposure, share);
+        }
         file::write(&picture, out)?;
         if !std::mem::replace(&mut told, true) {
             notes.extend(planned(&scene, &settings));
@@ -177,6 +195,17 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         tell_quality(&picture)?;
     }
     Ok(Outcome::Passed)
+}
+
+/// Refuses a glow where it would not be shown, or be taken for radiance.
+fn refuse_bloom(format: Format, backdrop: bool) -> Result<(), Failure> {
+    let reason = match (format, backdrop) {
+        (Format::Exr, _) => "an EXR holds the radiance itself; write a .png, or leave --bloom out",
+        (Format::Png, false) => "straight alpha has no place for light where no body is; leave one out",
+        (Format::Png, true) => return Ok(()),
+    };
+    let beside = if format == Format::Exr { "" } else { " with --background none" };
+    Err(Failure(format!("--bloom{beside}: {reason}")))
 }
 
 /// Refuses to write over what is read, and where nothing can be written.
@@ -223,6 +252,17 @@ fn tell_quality(picture: &Picture) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_glow_is_for_pictures_that_are_looked_at() {
+        assert!(refuse_bloom(Format::Png, true).is_ok());
+        for (format, backdrop, says) in [(Format::Exr, true, ".png"), (Format::Png, false, "--background none")] {
+            let Failure(message) = refuse_bloom(format, backdrop).expect_err("refused");
+            assert!(message.starts_with("--bloom") && message.contains(says) && !message.contains('\n'), "{message}");
+        }
+        assert_eq!(parse_share(DEFAULT_BLOOM), Ok(render::BLOOM));
+        assert!(["0", "-1", "1.1", "nan", "ring"].into_iter().all(|wrong| parse_share(wrong).is_err()));
+    }
 
     #[test]
     fn pictures_of_a_turn_sort_by_their_names() {

@@ -41,7 +41,7 @@ pub fn page(parts: &Parts<'_>) -> Page {
         recipes: usize,
     }
     let values = Values {
-        hero: parts.picture("vitrine"),
+        hero: parts.picture("ring"),
         cards: TECHNIQUES.iter().map(card).collect(),
         modules: cookbook::modules().len(),
         functions: cookbook::modules().iter().map(|module| module.functions.len()).sum(),

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::object::vertices;
-use crate::{Camera, Lacking, Object, Scene};
+use crate::{BuiltInEnvironment, Camera, Lacking, Object, Scene};
 
 /// A short portrait lens: about 27° from edge to edge.
 pub(super) const VERTICAL_FOV: f32 = 0.47;
@@ -16,6 +16,7 @@ pub(crate) fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scen
         objects,
         lights: Vec::new(),
         light_radii: Vec::new(),
+        environment: BuiltInEnvironment::Studio,
         camera,
         lacking: Lacking::default(),
     }

@@ -1,6 +1,6 @@
 //! The list of the built-in scenes: names, descriptions, and how each is made.
 
-use super::{cut, materials, pave, prisms, stone, translucent, tray, tumbler, vitrine};
+use super::{cut, materials, pave, prisms, ring, stone, translucent, tray, tumbler, vitrine};
 use crate::polyhedron::Triangulation;
 use crate::{Averaging, Scene, SceneError};
 
@@ -16,7 +16,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 34] = [
+pub const BUILT_IN: [BuiltIn; 35] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -83,6 +83,13 @@ pub const BUILT_IN: [BuiltIn; 34] = [
         description: "A band of 200 brilliants of corundum, set close in five rows round a ring, in all colours of \
             sapphire from violet to ruby. One shape, one draw call, 80 bytes for each stone.",
         make: pave::ring,
+    },
+    BuiltIn {
+        name: "ring",
+        description: "A ring of yellow gold on a dark cloth: a brilliant in six prongs, and five small ones in a channel in each \
+            shoulder. Lit as jewellers do it, by softboxes, black flags and rows of small bright lights (`--environment jeweller`), and \
+            by two lamps.",
+        make: ring::ring,
     },
     BuiltIn {
         name: "tray",

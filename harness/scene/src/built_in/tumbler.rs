@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3, Vec3};
 use super::framing::VERTICAL_FOV;
 use super::{materials, translucent};
 use crate::surfaces::{lathe, rounded_box};
-use crate::{Camera, Lacking, Light, Material, Medium, Mesh, Object, Scene, SceneError};
+use crate::{BuiltInEnvironment, Camera, Lacking, Light, Material, Medium, Mesh, Object, Scene, SceneError};
 
 /// Vertices around a round body.
 const AROUND: u32 = 96;
@@ -52,6 +52,7 @@ pub(super) fn tumbler(name: &str) -> Result<Scene, SceneError> {
         objects,
         lights: vec![Light::Point { position: flame, intensity: 60.0 * Vec3::new(1.0, 0.62, 0.28) }],
         light_radii: vec![Some(0.5)],
+        environment: BuiltInEnvironment::Studio,
         camera: Camera::upright(Vec3::new(2.6, 13.5, 38.0), Vec3::new(3.9, 6.3, 0.0), VERTICAL_FOV),
         lacking: Lacking::default(),
     })

@@ -6,7 +6,9 @@ use std::f32::consts::PI;
 
 use super::framing::VERTICAL_FOV;
 use super::{materials, stone, translucent};
-use crate::{Camera, Density, Dispersion, Lacking, Light, Material, Medium, Object, Scene, SceneError, gltf};
+use crate::{
+    BuiltInEnvironment, Camera, Density, Dispersion, Lacking, Light, Material, Medium, Object, Scene, SceneError, gltf,
+};
 use lapidary_veins::VeinsPattern;
 
 /// The meshes, made by the program in `harness/assets/`.
@@ -30,6 +32,7 @@ pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
         objects,
         lights: lights(),
         light_radii: Vec::new(),
+        environment: BuiltInEnvironment::Studio,
         camera: camera(),
         lacking: Lacking::default(),
     })

@@ -30,6 +30,7 @@ impl<'scene> Lone<'scene> {
                 objects: vec![object.clone()],
                 lights: scene.lights.clone(),
                 light_radii: scene.light_radii.clone(),
+                environment: scene.environment,
                 camera: scene.camera,
                 lacking: Lacking::default(),
             };

@@ -30,6 +30,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
         objects: bodies.into_iter().map(object).collect(),
         lights,
         light_radii: Vec::new(),
+        environment: lapidary_scene::BuiltInEnvironment::Studio,
         camera,
         lacking: lapidary_scene::Lacking::default(),
     }

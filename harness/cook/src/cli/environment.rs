@@ -1,0 +1,67 @@
+//! `--environment`: a built-in environment by its name, or an image.
+
+use super::Failure;
+use lapidary_files::nearest;
+use lapidary_plan::Note;
+use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
+use lapidary_scene::{BuiltInEnvironment, Environment};
+use std::path::{Path, PathBuf};
+
+/// Light from far away, as it is asked for.
+#[derive(Clone)]
+pub(super) enum EnvironmentAsked {
+    BuiltIn(BuiltInEnvironment),
+    File(PathBuf),
+}
+
+impl EnvironmentAsked {
+    /// Reads what a user types. A name is no file, whatever the folder holds: `./jeweller` is one.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        if let Some(environment) = BuiltInEnvironment::ALL.into_iter().find(|one| one.name() == text) {
+            return Ok(Self::BuiltIn(environment));
+        }
+        let path = PathBuf::from(text);
+        if text.contains(['/', '\\', '.']) || path.exists() {
+            return Ok(Self::File(path));
+        }
+        let known = BuiltInEnvironment::ALL.map(BuiltInEnvironment::name);
+        Err(format!("no environment has this name, and no file is there{}", nearest::suggest(text, &known)))
+    }
+
+    /// Returns the file that is read.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::BuiltIn(_) => None,
+            Self::File(file) => Some(file),
+        }
+    }
+
+    /// Makes or reads the environment; with a note if radiance in the file is negative.
+    pub(super) fn make(&self) -> Result<(Environment, Option<Note>), Failure> {
+        let path = match self {
+            Self::BuiltIn(environment) => return Ok((environment.make(), None)),
+            Self::File(path) => path,
+        };
+        let (map, Clamped { pixels, least }) = EnvironmentMap::load_counting(path)?;
+        let file = || path.display().to_string();
+        let note = (pixels > 0).then(|| Note::NegativeRadiance { file: file(), pixels, least });
+        Ok((Environment::Map(map), note))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_a_name_a_path_a_path_and_anything_else_is_refused() {
+        let file = |text: &str| EnvironmentAsked::parse(text).expect("known").file().map(Path::to_path_buf);
+        assert_eq!(file("jeweller"), None);
+        for path in ["./jeweller", "jeweller.hdr", "a/b", "Cargo.toml"] {
+            assert_eq!(file(path), Some(PathBuf::from(path)));
+        }
+        let refused = |text: &str| EnvironmentAsked::parse(text).err().unwrap_or_default();
+        assert!(refused("jeweler").ends_with("; did you mean `jeweller`?"), "{}", refused("jeweler"));
+        assert!(refused("zzz").ends_with("; there are studio, jeweller"), "{}", refused("zzz"));
+    }
+}
