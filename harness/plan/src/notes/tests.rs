@@ -44,7 +44,7 @@ fn little_is_said_of_the_built_ins() {
     for built_in in BUILT_IN {
         let expected: &[&str] = match built_in.name {
             "tray" => &["2 objects, first `diamond`: other clear bodies overlap it in the view"],
-            "ring" => &["first `side stone 3`: other clear bodies overlap it in the view"],
+            "ring" => &["first `side stone 1`: other clear bodies overlap it in the view"],
             "pave_ring" => &["follows light through one copy"],
             "tumbler" => {
                 &["`water`: shares space with the clear `glass`", "`straw`: shares space with the clear `water`"]
