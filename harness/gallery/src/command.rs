@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 #[command(after_help = "Example: ./cook gallery --open")]
 pub struct Arguments {
     /// Output folder; target/gallery of the cookbook by default.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Render the committed pictures anew on this device, instead of taking their files.
     #[arg(long)]

@@ -64,7 +64,10 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     // A setting is met where light leaves the stone, unless time is no matter.
     let shared = || match request.quality {
         Quality::Best => among::shares_space(object, scene),
-        Quality::Fast | Quality::Good => among::reaches_into(object, scene, meets(object, scene, request)),
+        Quality::Fast | Quality::Good => {
+            let meets = walks(object, request) && meets(object, scene, request);
+            among::reaches_into(object, scene, meets)
+        }
     };
     if inside
         && has(Effect::Nested)

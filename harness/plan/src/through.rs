@@ -14,8 +14,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Share of a stone's light, from other clear bodies, up to which it may be drawn without them: a hundredth costs a FLIP of about
 /// .01 (docs/gem_scene.md), and .05 is what the quicker rung may cost.
 const MOST: f32 = 0.05;
-/// The same of the light of a whole picture, from all those stones together that have a greater share themselves: stones that are
-/// small in it.
+/// Area of a stone, as a share of the picture's, up to which it may lack more: a tenth of the picture's side.
+const SMALL: f32 = 0.01;
+/// Sum over such stones of the products of share and area: as much FLIP of the whole picture, by the same rule.
 const MOST_OF_PICTURE: f32 = 0.02;
 /// Rays along each side of the picture of a stone, and of each of several copies: enough for a share within a few hundredths.
 const RAYS: u32 = 12;
@@ -99,7 +100,7 @@ fn little(found: &[(f32, f32)]) -> Arc<[Others]> {
     let mut sum = 0.0;
     for number in more {
         sum += of_picture(&number);
-        others[number].is_little = sum <= MOST_OF_PICTURE;
+        others[number].is_little = sum <= MOST_OF_PICTURE && found[number].1 <= SMALL;
     }
     others.into()
 }

@@ -14,8 +14,11 @@ use rayon::prelude::*;
 /// Default share of the light that is spread.
 pub const BLOOM: f32 = 0.06;
 
-/// Standard deviations as shares of the picture's shorter side, and how the spread light is divided among them.
+/// Standard deviations as shares of the picture's shorter side, and how the spread light is divided among them; chosen by eye.
 const WIDTHS: [(f64, f64); 3] = [(0.004, 0.5), (0.016, 0.3), (0.06, 0.2)];
+
+/// Exposed radiance of which no more is spread: a picture is white far below it, and sums over a line stay exact.
+const BRIGHTEST: f32 = 65536.0;
 
 /// Adds the glow to the pixels that are shown, of a picture before the backdrop; the linear picture stays as it is. `strength` is the
 /// share of light that is spread, 0 to 1, and `exposure` that of the picture.
@@ -24,8 +27,11 @@ const WIDTHS: [(f64, f64); 3] = [(0.004, 0.5), (0.016, 0.3), (0.06, 0.2)];
 /// the tone-mapped mean, so that edges stay as smooth as they were.
 pub fn bloom(picture: &mut Picture, exposure: f32, strength: f32) {
     let size = [picture.width as usize, picture.height as usize];
+    let most = BRIGHTEST / exposure.max(f32::MIN_POSITIVE);
+    // The least of a number and no number is the number.
+    let light = |part: &f32| part.min(most).max(0.0);
     let sharp: Vec<DVec3> =
-        picture.linear.iter().map(|[red, green, blue, _]| Vec3::new(*red, *green, *blue).as_dvec3()).collect();
+        picture.linear.iter().map(|[r, g, b, _]| Vec3::new(light(r), light(g), light(b)).as_dvec3()).collect();
     let spread = spread(&sharp, size, f64::from(strength));
     let whole = Vec2::new(picture.width as f32, picture.height as f32);
     for (place, encoded) in picture.encoded.iter_mut().enumerate() {
@@ -149,6 +155,18 @@ mod tests {
         let red = |picture: &Picture, column: usize| picture.encoded[3 * SIZE[0] + column][0];
         assert!(red(&shown, 5) > red(&before, 5) + 10, "{} {}", red(&shown, 5), red(&before, 5));
         assert!((5..SIZE[0] - 1).all(|column| red(&shown, column + 1) <= red(&shown, column)));
+    }
+
+    #[test]
+    fn pixels_of_any_radiance_darken_no_others() {
+        for bright in [1e36, f64::INFINITY] {
+            let mut pixels = spark();
+            pixels[3 * SIZE[0] + 2] = DVec3::splat(bright);
+            let mut shown = picture(&pixels);
+            let before = shown.clone();
+            bloom(&mut shown, 1.0, BLOOM);
+            assert!(shown.encoded.iter().zip(&before.encoded).all(|(after, before)| after >= before), "{bright}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::environment_map::EnvironmentMap;
 use glam::{DVec3, UVec2};
 use lapidary_environment::oracle;
+use std::sync::OnceLock;
 
 mod jeweller;
 
@@ -43,7 +44,10 @@ impl BuiltInEnvironment {
     pub fn make(self) -> Environment {
         match self {
             Self::Studio => Environment::Studio,
-            Self::Jeweller => Environment::Map(jeweller::map()),
+            Self::Jeweller => {
+                static MAP: OnceLock<EnvironmentMap> = OnceLock::new();
+                Environment::Map(MAP.get_or_init(jeweller::map).clone())
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::gltf::{COLORING, INSTANCING, TEXTURE_TRANSFORM};
-use super::{Bounds, Camera, Copies, Material, Object, Place, Scene};
+use super::{Bounds, BuiltInEnvironment, Camera, Copies, Material, Object, Place, Scene};
 
 mod light;
 mod material;
@@ -70,7 +70,7 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 /// `KHR_materials_diffuse_transmission`, the refractive index as `KHR_materials_ior`, thickness and
 /// attenuation as `KHR_materials_volume`, and dispersion as `KHR_materials_dispersion`. glTF has no
 /// Sellmeier equation: its name goes into `extras.lapidary.sellmeier`, together with an approximate
-/// dispersion for other programs. A medium, a `sigma0` and a solver go into `extras.lapidary`;
+/// dispersion for other programs. A medium, a `sigma0`, a solver and the environment go into `extras.lapidary`;
 /// other programs show the base colour. Lights are written as `KHR_lights_punctual`, images as
 /// embedded PNG, each once.
 ///
@@ -263,11 +263,15 @@ impl Document {
         if self.textures.is_transformed() {
             extensions_used.insert(TEXTURE_TRANSFORM);
         }
+        let mut of_scene = json!({"name": scene.name, "nodes": (0..nodes.len()).collect::<Vec<_>>()});
+        if scene.environment != BuiltInEnvironment::default() {
+            of_scene["extras"] = json!({"lapidary": {"environment": scene.environment.name()}});
+        }
         let mut written = json!({
             "asset": {"version": "2.0", "generator": "Lapidary"},
             "extensionsUsed": extensions_used,
             "scene": 0,
-            "scenes": [{"name": scene.name, "nodes": (0..nodes.len()).collect::<Vec<_>>()}],
+            "scenes": [of_scene],
             "nodes": nodes,
             "cameras": [{
                 "type": "perspective",

@@ -22,7 +22,7 @@ use glam::Vec3;
 use super::camera::Camera;
 use super::lacking::Matter;
 use super::object::vertices;
-use super::{BuiltInEnvironment, Object, Opening, Scene, SceneError};
+use super::{Object, Opening, Scene, SceneError};
 
 mod accessor;
 mod animation;
@@ -146,8 +146,8 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>, opening: &Opening) -> Result<S
     };
     let (lights, light_radii) = light_node::lights(&root, &shown.nodes)?.into_iter().unzip();
     let lacking = survey::lacking(&root, &shown.nodes, &materials, of_bodies, opening);
-    let environment = BuiltInEnvironment::default();
-    Ok(Scene { name: shown.name, objects, lights, light_radii, environment, camera, lacking })
+    let nodes::Shown { name, environment, .. } = shown;
+    Ok(Scene { name, objects, lights, light_radii, environment, camera, lacking })
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value = "wgsl")]
     to: Target,
     /// Output file; stdout by default.
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 

@@ -57,7 +57,7 @@ pub(super) struct Asked {
     pub(super) without: Vec<Effect>,
     /// Light from far away: studio, jeweller (softboxes, black flags and small bright lights), or a latitude-longitude .exr or
     /// .hdr image; by default the scene's own, which is the studio but for `ring`.
-    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parse)]
+    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parser())]
     pub(super) environment: Option<EnvironmentAsked>,
     /// Camera of the file: its name, its node's name, or its number; the first one by default.
     #[arg(long, value_name = "NAME|N")]
@@ -76,8 +76,10 @@ const LIGHT: &str = "light";
 
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
-    let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
-    parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
+    // One number is a square's.
+    let (width, height) = text.split_once('x').unwrap_or((text, text));
+    let parsed = digits(width).zip(digits(height));
+    parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512, or a square's side".to_owned())
 }
 
 fn parse_time(text: &str) -> Result<f32, String> {

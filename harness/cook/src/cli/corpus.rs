@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// Folder of .glb and .gltf files.
     folder: PathBuf,
     /// Draw each file as well, into this folder, as `ring.glb.png` for `ring.glb`; the table goes there as `corpus.json`.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Width and height of the pictures in pixels.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     quality: Option<Quality>,
     /// Light from far away: studio (the default), jeweller (softboxes, black flags and small bright lights), or a
     /// latitude-longitude .exr or .hdr image.
-    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parse)]
+    #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parser())]
     environment: Option<EnvironmentAsked>,
 }
 

@@ -1,10 +1,12 @@
 //! `--environment`: a built-in environment by its name, or an image.
 
 use super::Failure;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use lapidary_files::nearest;
 use lapidary_plan::Note;
 use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_scene::{BuiltInEnvironment, Environment};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Light from far away, as it is asked for.
@@ -15,17 +17,23 @@ pub(super) enum EnvironmentAsked {
 }
 
 impl EnvironmentAsked {
+    /// The parser of the option: a path need not be Unicode.
+    pub(super) fn parser() -> impl TypedValueParser<Value = Self> {
+        OsStringValueParser::new().try_map(Self::parse)
+    }
+
     /// Reads what a user types. A name is no file, whatever the folder holds: `./jeweller` is one.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        if let Some(environment) = BuiltInEnvironment::ALL.into_iter().find(|one| one.name() == text) {
+    fn parse(asked: OsString) -> Result<Self, String> {
+        if let Some(environment) = BuiltInEnvironment::ALL.into_iter().find(|one| asked == one.name()) {
             return Ok(Self::BuiltIn(environment));
         }
-        let path = PathBuf::from(text);
+        let path = PathBuf::from(asked);
+        let text = path.to_string_lossy();
         if text.contains(['/', '\\', '.']) || path.exists() {
-            return Ok(Self::File(path));
+            return Ok(Self::File(path.clone()));
         }
         let known = BuiltInEnvironment::ALL.map(BuiltInEnvironment::name);
-        Err(format!("no environment has this name, and no file is there{}", nearest::suggest(text, &known)))
+        Err(format!("no environment has this name, and no file is there{}", nearest::suggest(&text, &known)))
     }
 
     /// Returns the file that is read.
@@ -55,12 +63,12 @@ mod tests {
 
     #[test]
     fn a_name_is_a_name_a_path_a_path_and_anything_else_is_refused() {
-        let file = |text: &str| EnvironmentAsked::parse(text).expect("known").file().map(Path::to_path_buf);
+        let file = |text: &str| EnvironmentAsked::parse(text.into()).expect("known").file().map(Path::to_path_buf);
         assert_eq!(file("jeweller"), None);
         for path in ["./jeweller", "jeweller.hdr", "a/b", "Cargo.toml"] {
             assert_eq!(file(path), Some(PathBuf::from(path)));
         }
-        let refused = |text: &str| EnvironmentAsked::parse(text).err().unwrap_or_default();
+        let refused = |text: &str| EnvironmentAsked::parse(text.into()).err().unwrap_or_default();
         assert!(refused("jeweler").ends_with("; did you mean `jeweller`?"), "{}", refused("jeweler"));
         assert!(refused("zzz").ends_with("; there are studio, jeweller"), "{}", refused("zzz"));
     }

@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     drawn: Drawn,
     /// New or empty output folder.
-    #[arg(long, value_name = "DIR", help_heading = "Options")]
+    #[arg(short, long, value_name = "DIR", help_heading = "Options")]
     out: PathBuf,
 }
 

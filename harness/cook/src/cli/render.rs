@@ -22,14 +22,14 @@ pub(super) struct Arguments {
     drawn: Drawn,
     /// Output file, PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in the current
     /// folder by default, or SCENE.picture.png if the scene is read from a file of that name.
-    #[arg(long, value_name = "F.png|F.exr", help_heading = "Options")]
+    #[arg(short, long, value_name = "F.png|F.exr", help_heading = "Options")]
     out: Option<PathBuf>,
     /// So many pictures in place of one, of the bodies as they turn once about the vertical, under the same lights: F-000.png,
     /// F-001.png and so on.
     #[arg(long, value_name = "N", value_parser = number::whole(1..=MOST_PICTURES), help_heading = "Options")]
     turntable: Option<u32>,
-    /// Glow around bright places, for a PNG: the share of light that is spread, above 0 and at most 1; 0.06 where it is left out.
-    /// Nothing but the written picture has it: no error is ever taken of it.
+    /// Glow around bright places, for a PNG: the share of light that is spread, above 0 and at most 1; 0.06 by `--bloom` alone.
+    /// Only the written picture has it: ladders and tests do not.
     #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = DEFAULT_BLOOM, value_parser = parse_share, help_heading = "Options")]
     bloom: Option<f32>,
     #[command(flatten)]
@@ -177,20 +177,20 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         }
     };
     files.iter().try_for_each(|file| check_output(file, inputs()))?;
-    // What is told of one picture of a turn holds for all.
-    let mut told = false;
+    // Of a turn's further pictures what is new is told: stones that are small in one may not be so in another.
+    let mut told: Vec<String> = Vec::new();
     for (scene, out) in scenes.zip(&files) {
         let mut picture = draw(context, &scene, &settings)?;
         if let Some(share) = arguments.bloom {
             render::bloom(&mut picture, settings.exposure, share);
         }
         file::write(&picture, out)?;
-        if !std::mem::replace(&mut told, true) {
-            notes.extend(planned(&scene, &settings));
-            notes.retain(|note| !is_told_again(note, &picture.notes));
-            notes.extend(picture.notes.iter().cloned());
-            tell(&notes, &scene);
-        }
+        notes.extend(planned(&scene, &settings));
+        notes.retain(|note| !is_told_again(note, &picture.notes));
+        notes.extend(picture.notes.iter().cloned());
+        notes.retain(|note| !told.contains(&note.to_string()));
+        told.extend(notes.iter().map(ToString::to_string));
+        tell(&std::mem::take(&mut notes), &scene);
         output::line(&out.display().to_string())?;
         tell_quality(&picture)?;
     }
@@ -201,7 +201,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 fn refuse_bloom(format: Format, backdrop: bool) -> Result<(), Failure> {
     let reason = match (format, backdrop) {
         (Format::Exr, _) => "an EXR holds the radiance itself; write a .png, or leave --bloom out",
-        (Format::Png, false) => "straight alpha has no place for light where no body is; leave one out",
+        (Format::Png, false) => {
+            "straight alpha has no place for light where no body is; leave out --bloom or --background none"
+        }
         (Format::Png, true) => return Ok(()),
     };
     let beside = if format == Format::Exr { "" } else { " with --background none" };

@@ -14,7 +14,7 @@ pub(super) struct Arguments {
     #[arg(help = format!("one of {}", scene::names()))]
     name: String,
     /// Output file.
-    #[arg(long, value_name = "F.glb")]
+    #[arg(short, long, value_name = "F.glb")]
     out: PathBuf,
 }
 

@@ -23,7 +23,7 @@ type Row = (&'static str, Lines, &'static [&'static str]);
 const RENDER: &[Row] = &[
     ("octahedron --size 0x0 --out {}/out.png", One, &["size 0x0", "1 to 8192"]),
     ("octahedron --size 9000x512 --out {}/out.png", One, &["size 9000x512", "1 to 8192"]),
-    ("octahedron --size 512 --out {}/out.png", One, &["--size", "512x512"]),
+    ("octahedron --size 512x --out {}/out.png", One, &["--size", "512x512"]),
     ("octahedron --size axb --out {}/out.png", One, &["--size", "axb"]),
     ("octahedron --size -1x5 --out {}/out.png", One, &["--size", "-1x5", "512x512"]),
     ("octahedron --size=-1x5 --out {}/out.png", One, &["--size", "-1x5"]),

@@ -109,9 +109,9 @@ fn copies_in_a_band_are_walked() {
 #[test]
 fn small_stones_may_lack_more_and_all_together_little() {
     let is_little = |found: &[(f32, f32)]| little(found).iter().map(|others| others.is_little).collect::<Vec<_>>();
-    assert_eq!(is_little(&[(0.05, 1.0), (0.06, 1.0), (0.5, 0.01), (0.0, 0.0)]), [true, false, true, true]);
-    // The least first: .005 + .01, and .015 more are too many.
-    assert_eq!(is_little(&[(0.3, 0.05), (0.1, 0.05), (0.2, 0.05)]), [false, true, true]);
+    assert_eq!(is_little(&[(0.05, 1.0), (0.06, 0.02), (0.5, 0.01), (0.0, 0.0)]), [true, false, true, true]);
+    // The least first: .006 + .007, and .0075 more are too many.
+    assert_eq!(is_little(&[(0.75, 0.01), (0.6, 0.01), (0.7, 0.01)]), [false, true, true]);
     // The same scene from near and from far.
     let pair = || vec![block(1.0, DVec3::ZERO, glass(1.5)), block(3.0, DVec3::new(0.0, 0.0, -6.0), glass(1.5))];
     let seen_from = |distance: f32| {

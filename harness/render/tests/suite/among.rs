@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use lapidary_fresnel::oracle as fresnel;
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Decisions, Effect, Effects};
 use lapidary_refraction::oracle as refraction;
 use lapidary_render::{Picture, Settings, render};
 use lapidary_scene::environment_map::EnvironmentMap;
@@ -365,6 +365,27 @@ fn a_stone_in_its_setting_is_walked_as_it_is_by_triangles() {
         difference(&drawn(&scene, &Settings { without, ..settings("walk-16") }), &by_triangles, 20)
     };
     assert!(walked < 0.02 && unmet > 3.0 * walked, "{walked}, and {unmet} without the prong");
+}
+
+/// A body that reaches through a convex stone, and one that lies within it, are met by rays inside as by all triangles.
+#[test]
+fn what_reaches_deep_into_a_stone_is_walked_as_it_is_by_triangles() {
+    let stone =
+        || Object::new("stone", flat(&Scene::named("octahedron").expect("built in").objects[0].mesh), glass(1.5));
+    let bar = |half: Vec3| {
+        let mesh = cube(1.0);
+        let positions = mesh.positions.iter().map(|position| *position * half).collect();
+        Object::new("bar", Mesh { positions, ..mesh }, matte(Vec3::new(0.9, 0.3, 0.1)))
+    };
+    for half in [Vec3::new(2.0, 0.1, 0.1), Vec3::splat(0.15)] {
+        let scene = scene(vec![stone(), bar(half)]);
+        let settings = |rung: &str| Settings { environment: Environment::Studio, ..of_rung(rung) };
+        let decided = Decisions::of(&scene.objects[0], &scene, &settings("by-material").request());
+        assert!(!decided.rung.is_among() && decided.has(Effect::Nested), "{half}: {}", decided.reason);
+        let [walked, by_triangles] = ["walk-16", "scene-32"].map(|rung| drawn(&scene, &settings(rung)));
+        let (error, _) = difference(&walked, &by_triangles, 20);
+        assert!(error < 0.02, "{half}: {error}");
+    }
 }
 
 /// Numbers from 0 to 1 that follow from a seed (splitmix64).

@@ -183,27 +183,25 @@ fn what_is_no_rounded_cut_says_why() {
     says(recover(&ball).map(|_| 0).map_err(|error| error.to_string()), "has more triangles than a cut stone");
 }
 
-/// A stone whose corners were modelled unevenly is none that rounding bent: it keeps its mesh.
+/// A stone whose corners were modelled unevenly is none that rounding bent: it keeps its mesh if they turn much of it.
 #[test]
 fn dents_that_were_modelled_are_no_rounding() {
     let [(_, brilliant), ..] = cuts();
     let size = f64::from(2.0 * Bounds::of(brilliant.positions.iter().copied()).radius());
-    let mut kept = 0;
-    for row in 0..8 {
+    let dented = |row, share: f64| {
         let mut draws = Draws::of_row(41, row);
         let mut dented = brilliant.clone();
         for position in &mut dented.positions {
-            *position += Vec3::from_array([0; 3].map(|_| draws.between(-1.0, 1.0))) * (8e-3 * size) as f32;
+            *position += Vec3::from_array([0; 3].map(|_| draws.between(-1.0, 1.0))) * (share * size) as f32;
         }
-        match recover(&dented) {
-            Err(_) => kept += 1,
-            Ok(found) => {
-                // The hull of such corners has hardly any but triangles for facets.
-                let planes: Vec<Plane> = found.facets.iter().map(|facet| facet.plane).collect();
-                let points: Vec<DVec3> = dented.positions.iter().map(|position| position.as_dvec3()).collect();
-                assert!(found.is_steady || turned(&dented, &points, &planes) <= TURNED);
-            }
-        }
+        recover(&dented)
+    };
+    let is_turned = |found: Result<Recovered, NotRecovered>| matches!(found, Err(NotRecovered::Turned { .. }));
+    let turned = (0..8).filter(|&row| is_turned(dented(row, 6e-3))).count();
+    assert!(turned >= 3, "{turned}");
+    // Facets are some .3 of the diameter wide: a thousandth turns them by less than a degree, but those of the girdle.
+    for row in 0..8 {
+        let found = dented(row, 1e-3);
+        assert!(found.is_ok(), "{row}: {found:?}");
     }
-    assert!(kept >= 6, "{kept}");
 }

@@ -25,6 +25,7 @@ fn every_built_in_scene_survives_writing_and_loading() {
         }
         assert_eq!(again.objects.len(), scene.objects.len());
         assert_eq!(again.lights, scene.lights);
+        assert_eq!(again.environment, scene.environment);
         let (a, b) = (again.camera, scene.camera);
         assert_eq!(a.vertical_fov, b.vertical_fov);
         assert_eq!(a.eye, b.eye);

@@ -1,4 +1,4 @@
-//! `extras.lapidary` of a material: properties that glTF cannot express.
+//! `extras.lapidary` of a material, and of a scene: properties that glTF cannot express.
 //!
 //! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`](crate::Mineral::ALL). It gives the
 //! refractive index and the dispersion; if the file states these as well, they must agree. `sigma0`
@@ -8,7 +8,7 @@
 //! `normals` is [`Material::normals`](crate::Material::normals), and
 //! `solver` is [`Material::solver`](crate::Material::solver).
 //! Lengths are in world units: as with `attenuationDistance`, the scale of a node does not change
-//! them.
+//! them. `environment` of a scene is [`Scene::environment`](crate::Scene::environment), by its name.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -19,6 +19,7 @@ use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use super::error::excerpt;
+use crate::BuiltInEnvironment;
 
 mod apply;
 
@@ -75,10 +76,17 @@ fn present<'de, D: Deserializer<'de>>(member: D) -> Result<Option<&'de RawValue>
     <&RawValue>::deserialize(member).map(Some)
 }
 
-/// Text of the material's `extras.lapidary`, or `None` if absent.
-fn text(json: &JsonMaterial) -> Result<Option<&RawValue>, String> {
+/// `extras.lapidary` of a scene.
+#[derive(Deserialize)]
+struct OfScene<'a> {
+    #[serde(borrow, default, deserialize_with = "present")]
+    environment: Option<&'a RawValue>,
+}
+
+/// Text of `extras.lapidary`, or `None` if absent.
+fn text(extras: Option<&RawValue>) -> Result<Option<&RawValue>, String> {
     // glTF allows any value for extras; a value that is not an object belongs to another program.
-    let Some(extras) = json.extras.as_deref().filter(|extras| is_object(extras)) else {
+    let Some(extras) = extras.filter(|extras| is_object(extras)) else {
         return Ok(None);
     };
     let extras: Extras<'_> = serde_json::from_str(extras.get()).map_err(|error| unreadable("extras", &error))?;
@@ -92,13 +100,27 @@ fn text(json: &JsonMaterial) -> Result<Option<&RawValue>, String> {
 
 /// The material's `extras.lapidary`, or `None` if absent.
 pub(super) fn lapidary(json: &JsonMaterial) -> Result<Option<Lapidary<'_>>, String> {
-    let lapidary = text(json)?.map(|text| serde_json::from_str(text.get()));
+    let lapidary = text(json.extras.as_deref())?.map(|text| serde_json::from_str(text.get()));
     lapidary.transpose().map_err(|error| unreadable("extras.lapidary", &error))
+}
+
+/// The environment that a scene's `extras.lapidary` names, or the usual one.
+pub(super) fn environment(extras: Option<&RawValue>) -> Result<BuiltInEnvironment, String> {
+    let Some(text) = text(extras)? else { return Ok(BuiltInEnvironment::default()) };
+    let OfScene { environment } =
+        serde_json::from_str(text.get()).map_err(|error| unreadable("extras.lapidary", &error))?;
+    let Some(json) = environment else { return Ok(BuiltInEnvironment::default()) };
+    let name: Option<String> = serde_json::from_str(json.get()).ok();
+    let known = name.and_then(|name| BuiltInEnvironment::ALL.into_iter().find(|known| known.name() == name));
+    known.ok_or_else(|| {
+        let names = BuiltInEnvironment::ALL.map(BuiltInEnvironment::name).join(" or ");
+        format!("its extras.lapidary.environment is {}, but must be {names}", excerpt(json.get()))
+    })
 }
 
 /// Members of the material's `extras.lapidary` that are not in [`Lapidary`], sorted.
 pub(super) fn unknown(json: &JsonMaterial) -> Vec<String> {
-    let members = text(json).ok().flatten().and_then(|text| {
+    let members = text(json.extras.as_deref()).ok().flatten().and_then(|text| {
         let members: Option<BTreeMap<Cow<'_, str>, &RawValue>> = serde_json::from_str(text.get()).ok();
         members
     });

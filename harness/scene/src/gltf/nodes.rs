@@ -5,6 +5,8 @@ use ::gltf::json::scene::Node;
 use glam::{DMat4, DQuat, DVec3};
 
 use super::error::{GltfError, designation, excerpt, item};
+use super::extras;
+use crate::BuiltInEnvironment;
 
 /// A node with its world transform.
 #[derive(Debug)]
@@ -28,6 +30,7 @@ impl ShownNode<'_> {
 pub(super) struct Shown<'a> {
     /// Name of the scene; empty if it has none.
     pub(super) name: String,
+    pub(super) environment: BuiltInEnvironment,
     pub(super) nodes: Vec<ShownNode<'a>>,
 }
 
@@ -36,15 +39,17 @@ impl<'a> Shown<'a> {
     /// without a parent.
     pub(super) fn of(root: &'a Root) -> Result<Self, GltfError> {
         let number = root.scene.map_or(0, |scene| scene.value());
-        let (name, roots) = if root.scene.is_none() && root.scenes.is_empty() {
-            (String::new(), orphans(root))
+        let (name, environment, roots) = if root.scene.is_none() && root.scenes.is_empty() {
+            (String::new(), BuiltInEnvironment::default(), orphans(root))
         } else {
             let scene = item(&root.scenes, "scene", number, || "the file".to_owned())?;
             let name = scene.name.as_deref().map(excerpt).unwrap_or_default();
-            (name, scene.nodes.iter().map(|node| node.value()).collect())
+            let environment = extras::environment(scene.extras.as_deref())
+                .map_err(|problem| GltfError::part(designation("scene", number, scene.name.as_deref()), problem))?;
+            (name, environment, scene.nodes.iter().map(|node| node.value()).collect())
         };
         let nodes = walk(root, &roots, number)?;
-        Ok(Self { name, nodes })
+        Ok(Self { name, environment, nodes })
     }
 }
 

@@ -47,13 +47,14 @@ fn exact(mesh: &Mesh, normals: Normals) -> Option<Result<Recovered, NotRecovered
     if normals == Normals::File || mesh.indices.is_empty() || planes_of_convex(mesh).is_some() {
         return None;
     }
-    let recovered = match recover(mesh) {
-        Ok(recovered) => recovered,
-        Err(why) => return Some(Err(why)),
-    };
     // Averaged over all edges, the normals of a cut stone are told from those of a round body by its edges.
-    (normals == Normals::Facets || shows_facets(mesh, &recovered) || !is_smooth(&recovered.mesh))
-        .then_some(Ok(recovered))
+    match recover(mesh) {
+        Ok(recovered) => {
+            let is_cut = normals == Normals::Facets || shows_facets(mesh, &recovered) || !is_smooth(&recovered.mesh);
+            is_cut.then_some(Ok(recovered))
+        }
+        Err(why) => (normals == Normals::Facets || !is_smooth(mesh)).then_some(Err(why)),
+    }
 }
 
 /// Whether the normals of a mesh are those of the facets that were recovered.

@@ -239,7 +239,7 @@ fn volumes_and_dispersions_out_of_range() {
 }
 
 #[test]
-fn measured_equations_that_are_not_known_or_do_not_agree() {
+fn names_that_are_not_known_and_equations_that_do_not_agree() {
     let sellmeier = |value: Value, says: &str| {
         material_refused("extras", json!({"lapidary": {"sellmeier": value}}), says);
     };
@@ -248,6 +248,11 @@ fn measured_equations_that_are_not_known_or_do_not_agree() {
     sellmeier(json!(2.4), "sellmeier is 2.4, but must be one of");
     sellmeier(json!(["diamond"]), "but must be one of");
     sellmeier(Value::Null, "sellmeier is null, but must be one of");
+    let environment = |value: Value, says: &str| {
+        refused("/scenes/0/extras", json!({"lapidary": {"environment": value}}), says);
+    };
+    environment(json!("tent"), "its extras.lapidary.environment is \"tent\", but must be studio or jeweller");
+    environment(Value::Null, "environment is null, but must be studio or jeweller");
     material_refused(
         "extras",
         json!({"lapidary": "diamond"}),
