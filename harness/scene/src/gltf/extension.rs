@@ -37,6 +37,11 @@ impl<'a> Extension<'a> {
         number.transpose()
     }
 
+    /// A number; `None` if the member is absent, or null: JSON has no infinity, for which JavaScript writes null.
+    pub(super) fn finite_number(&self, key: &str) -> Result<Option<f64>, String> {
+        if self.member(key).is_some_and(Value::is_null) { Ok(None) } else { self.number(key) }
+    }
+
     pub(super) fn four_numbers(&self, key: &str) -> Result<Option<[f64; 4]>, String> {
         self.numbers(key, "four numbers")
     }

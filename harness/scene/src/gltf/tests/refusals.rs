@@ -212,7 +212,7 @@ fn volumes_and_dispersions_out_of_range() {
         (json!(1e39), "finite in single precision"),
         (json!(1e-40), "is 1e-40, but must be above 0"),
         (json!("2"), "its attenuationDistance is a string, but must be a number"),
-        (json!(null), "its attenuationDistance is null, but must be a number"),
+        (json!([1]), "its attenuationDistance is an array of something else, but must be a number"),
     ] {
         volume("attenuationDistance", distance, says);
     }

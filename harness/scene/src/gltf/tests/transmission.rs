@@ -48,6 +48,8 @@ fn no_medium_is_derived_where_the_file_gives_no_reason() {
     none(json!({"thicknessFactor": 1}));
     none(json!({"thicknessFactor": 1, "attenuationColor": [0.5, 0.5, 0.5]}));
     none(json!({"thicknessFactor": 1, "attenuationDistance": 1}));
+    // What JavaScript writes for an infinite distance.
+    none(json!({"thicknessFactor": 1, "attenuationColor": [0.5, 0.5, 0.5], "attenuationDistance": null}));
     none(json!({"attenuationColor": [0.5, 0.5, 0.5], "attenuationDistance": 1}));
     let volume = json!({"thicknessFactor": 1, "attenuationColor": [0.5, 0.5, 0.5], "attenuationDistance": 1});
     let clear = material_of(json!({"extensions": {
