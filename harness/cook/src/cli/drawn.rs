@@ -341,8 +341,8 @@ pub(super) fn planned(scene: &Scene, settings: &Settings) -> Vec<Note> {
 const MOST_LINES: usize = 20;
 
 /// Prints warnings on stderr, the gravest first, and what of the scene's file is not drawn.
-pub(super) fn tell(notes: &[Note], scene: &Scene) {
-    for line in said(notes, &scene.lacking.clauses()) {
+pub(super) fn tell(notes: &[Note], lacking: &[String]) {
+    for line in said(notes, lacking) {
         output::remark(&line);
     }
 }

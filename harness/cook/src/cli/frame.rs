@@ -33,7 +33,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     frame.write(&arguments.out)?;
     notes.extend(planned(&scene, &settings));
-    tell(&notes, &scene);
+    tell(&notes, &scene.lacking.clauses());
     output::line(&format!(
         "{}: {} resources, {} pipelines, {} passes",
         arguments.out.display(),

@@ -10,6 +10,7 @@ use lapidary_render as render;
 use lapidary_render::file::{self, Format};
 use lapidary_render::{Picture, ReferenceOptions, Settings, WalkOptions, WalkedPicture};
 use lapidary_scene::Scene;
+use std::mem::{Discriminant, discriminant, take};
 use std::path::{Path, PathBuf};
 
 /// Renders a scene: a built-in by name, or a .glb or .gltf file.
@@ -168,6 +169,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if arguments.bloom.is_some() {
         refuse_bloom(format, settings.backdrop)?;
     }
+    let mut lacking = scene.lacking.clauses();
     let size = [settings.width, settings.height];
     let (files, scenes): (Vec<PathBuf>, Box<dyn Iterator<Item = Scene>>) = match arguments.turntable {
         None => (vec![out], Box::new(std::iter::once(scene))),
@@ -177,8 +179,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         }
     };
     files.iter().try_for_each(|file| check_output(file, inputs()))?;
-    // Of a turn's further pictures what is new is told: stones that are small in one may not be so in another.
-    let mut told: Vec<String> = Vec::new();
+    // Of a turn's further pictures a kind of note is told that none before had: what is small in one may not be so in another.
+    let mut told: Vec<Discriminant<Note>> = Vec::new();
     for (scene, out) in scenes.zip(&files) {
         let mut picture = draw(context, &scene, &settings)?;
         if let Some(share) = arguments.bloom {
@@ -188,9 +190,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         notes.extend(planned(&scene, &settings));
         notes.retain(|note| !is_told_again(note, &picture.notes));
         notes.extend(picture.notes.iter().cloned());
-        notes.retain(|note| !told.contains(&note.to_string()));
-        told.extend(notes.iter().map(ToString::to_string));
-        tell(&std::mem::take(&mut notes), &scene);
+        notes.retain(|note| !told.contains(&discriminant(note)));
+        told.extend(notes.iter().map(discriminant));
+        tell(&take(&mut notes), &take(&mut lacking));
         output::line(&out.display().to_string())?;
         tell_quality(&picture)?;
     }
@@ -200,14 +202,13 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 /// Refuses a glow where it would not be shown, or be taken for radiance.
 fn refuse_bloom(format: Format, backdrop: bool) -> Result<(), Failure> {
     let reason = match (format, backdrop) {
-        (Format::Exr, _) => "an EXR holds the radiance itself; write a .png, or leave --bloom out",
+        (Format::Exr, _) => ": an EXR holds the radiance itself; write a .png, or leave --bloom out",
         (Format::Png, false) => {
-            "straight alpha has no place for light where no body is; leave out --bloom or --background none"
+            " with --background none: straight alpha has no place for light where no body is; leave one of the two out"
         }
         (Format::Png, true) => return Ok(()),
     };
-    let beside = if format == Format::Exr { "" } else { " with --background none" };
-    Err(Failure(format!("--bloom{beside}: {reason}")))
+    Err(Failure(format!("--bloom{reason}")))
 }
 
 /// Refuses to write over what is read, and where nothing can be written.

@@ -318,10 +318,8 @@ fn jewellery_makes_white_plastic_stones() {
     assert_eq!(plan(&["--jewellery", "--material", "node=ruby"])["objects"][0]["material"], "ruby");
 }
 
-/// `ior` 0 of a clear body is said, unless a preset takes the place of its material, as is what else that lacks.
-#[test]
-fn what_a_preset_replaces_is_not_told() {
-    let folder = folder();
+/// Writes `gem.glb`: a ruby that asks for an index of 0 and for emission.
+fn write_lacking_gem(folder: &Path) {
     let written = glb::write(&Scene::named("ruby").expect("built in")).expect("glTF");
     let length = u32::from_le_bytes([12, 13, 14, 15].map(|place| written[place])) as usize;
     let mut document: Value = serde_json::from_slice(&written[20..20 + length]).expect("JSON");
@@ -329,7 +327,29 @@ fn what_a_preset_replaces_is_not_told() {
     document["materials"][0]["extras"]["lapidary"].as_object_mut().expect("extras").remove("sellmeier");
     document["materials"][0]["emissiveFactor"] = serde_json::json!([1, 1, 1]);
     let file = glb::container(document.to_string().as_bytes(), &written[28 + length..]).expect("glTF");
-    std::fs::write(folder.path().join("gem.glb"), file).expect("written");
+    std::fs::write(folder.join("gem.glb"), file).expect("written");
+}
+
+/// Of a turn, what the file lacks and each note are told with the first picture.
+#[test]
+fn what_a_turn_lacks_is_told_once() {
+    let folder = folder();
+    write_lacking_gem(folder.path());
+    let usual = ["render", "gem.glb", "--size", "16", "--samples", "1", "--turntable", "3", "--out", "gem.png"];
+    let answer = succeeds(folder.path(), &[&usual[..], &["--rung", "proxy-2", "--exposure", "50"]].concat());
+    let mut lines: Vec<&str> = answer.stderr.lines().collect();
+    let told = lines.len();
+    assert!(answer.stderr.contains("emissiveFactor") && told >= 3, "{}", answer.stderr);
+    lines.sort_unstable();
+    lines.dedup();
+    assert_eq!(lines.len(), told, "{}", answer.stderr);
+}
+
+/// `ior` 0 of a clear body is said, unless a preset takes the place of its material, as is what else that lacks.
+#[test]
+fn what_a_preset_replaces_is_not_told() {
+    let folder = folder();
+    write_lacking_gem(folder.path());
     let lacking = |more: &[&str]| -> Value {
         let answer = succeeds(folder.path(), &[&["plan", "gem.glb", "--json"], more].concat());
         serde_json::from_str::<Value>(&answer.stdout).expect("JSON")["lacking"].clone()
