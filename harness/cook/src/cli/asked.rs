@@ -56,7 +56,7 @@ pub(super) struct Asked {
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     pub(super) without: Vec<Effect>,
     /// Light from far away: studio, jeweller (softboxes, black flags and small bright lights), or a latitude-longitude .exr or
-    /// .hdr image; by default the scene's own, which is the studio but for `ring`.
+    /// .hdr image; by default the scene's own, which is the studio unless it names another.
     #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parser())]
     pub(super) environment: Option<EnvironmentAsked>,
     /// Camera of the file: its name, its node's name, or its number; the first one by default.

@@ -34,8 +34,8 @@ pub(super) struct Arguments {
     /// Time budget of each object's technique: fast, good or best; good by default.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
-    /// Light from far away: studio (the default), jeweller (softboxes, black flags and small bright lights), or a
-    /// latitude-longitude .exr or .hdr image.
+    /// Light from far away: studio, jeweller (softboxes, black flags and small bright lights), or a latitude-longitude .exr or
+    /// .hdr image; by default each file's own, which is the studio unless it names another.
     #[arg(long, value_name = "NAME|FILE", value_parser = EnvironmentAsked::parser())]
     environment: Option<EnvironmentAsked>,
 }
@@ -115,7 +115,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if files.is_empty() {
         return Err(Failure(format!("{}: has no .glb or .gltf file; name another folder", arguments.folder.display())));
     }
-    // Not once for each file.
+    // Read here, once for all files: one that cannot be read is told before any.
     if let Some(environment) = &arguments.environment {
         environment.make()?;
     }

@@ -8,12 +8,19 @@ use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_scene::{BuiltInEnvironment, Environment};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 /// Light from far away, as it is asked for.
 #[derive(Clone)]
 pub(super) enum EnvironmentAsked {
     BuiltIn(BuiltInEnvironment),
-    File(PathBuf),
+    File(Arc<ImageFile>),
+}
+
+/// An image, which is read once however often it is asked for.
+pub(super) struct ImageFile {
+    path: PathBuf,
+    read: OnceLock<(EnvironmentMap, Clamped)>,
 }
 
 impl EnvironmentAsked {
@@ -27,33 +34,41 @@ impl EnvironmentAsked {
         if let Some(environment) = BuiltInEnvironment::ALL.into_iter().find(|one| asked == one.name()) {
             return Ok(Self::BuiltIn(environment));
         }
-        let path = PathBuf::from(asked);
-        let text = path.to_string_lossy();
-        if text.contains(['/', '\\', '.']) || path.exists() {
-            return Ok(Self::File(path.clone()));
+        let text = asked.to_string_lossy();
+        if !text.contains(['/', '\\', '.']) && !Path::new(&asked).exists() {
+            let known = BuiltInEnvironment::ALL.map(BuiltInEnvironment::name);
+            return Err(format!(
+                "no environment has this name, and no file is there{}",
+                nearest::suggest(&text, &known)
+            ));
         }
-        let known = BuiltInEnvironment::ALL.map(BuiltInEnvironment::name);
-        Err(format!("no environment has this name, and no file is there{}", nearest::suggest(&text, &known)))
+        Ok(Self::File(Arc::new(ImageFile { path: asked.into(), read: OnceLock::new() })))
     }
 
     /// Returns the file that is read.
     pub(super) fn file(&self) -> Option<&Path> {
         match self {
             Self::BuiltIn(_) => None,
-            Self::File(file) => Some(file),
+            Self::File(file) => Some(&file.path),
         }
     }
 
     /// Makes or reads the environment; with a note if radiance in the file is negative.
     pub(super) fn make(&self) -> Result<(Environment, Option<Note>), Failure> {
-        let path = match self {
+        let ImageFile { path, read } = match self {
             Self::BuiltIn(environment) => return Ok((environment.make(), None)),
-            Self::File(path) => path,
+            Self::File(file) => &**file,
         };
-        let (map, Clamped { pixels, least }) = EnvironmentMap::load_counting(path)?;
+        let (map, Clamped { pixels, least }) = match read.get() {
+            Some(read) => read,
+            None => {
+                let loaded = EnvironmentMap::load_counting(path)?;
+                read.get_or_init(|| loaded)
+            }
+        };
         let file = || path.display().to_string();
-        let note = (pixels > 0).then(|| Note::NegativeRadiance { file: file(), pixels, least });
-        Ok((Environment::Map(map), note))
+        let note = (*pixels > 0).then(|| Note::NegativeRadiance { file: file(), pixels: *pixels, least: *least });
+        Ok((Environment::Map(map.clone()), note))
     }
 }
 
