@@ -74,7 +74,7 @@ pub(crate) fn shares_space<'a>(object: &'a Object, scene: &'a Scene) -> Option<&
     met(object, scene).find(|other| share(object, other))
 }
 
-/// Returns the first such body that does more than hold a cut stone; if rays inside meet opaque bodies, `meets`, that is not opaque.
+/// Returns the first such body that does more than hold a cut stone. Opaque ones do not where rays inside meet them: `meets`.
 pub(crate) fn reaches_into<'a>(object: &'a Object, scene: &'a Scene, meets: bool) -> Option<&'a Object> {
     // Vertices in a body of many triangles take much longer than planes of a stone.
     met(object, scene).find(|other| !setting::holds(other, object, meets) && share(object, other))

@@ -61,13 +61,12 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
 fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option<String> {
     let has = |effect| !request.without.has(effect);
     let inside = object.material.thickness > 0.0;
+    let walks = inside && walks(object, request);
+    let meets = || walks && meets(object, scene, request);
     // A setting is met where light leaves the stone, unless time is no matter.
     let shared = || match request.quality {
         Quality::Best => among::shares_space(object, scene),
-        Quality::Fast | Quality::Good => {
-            let meets = walks(object, request) && meets(object, scene, request);
-            among::reaches_into(object, scene, meets)
-        }
+        Quality::Fast | Quality::Good => among::reaches_into(object, scene, meets()),
     };
     if inside
         && has(Effect::Nested)
@@ -96,7 +95,6 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
     if request.outside.is_some() {
         return None;
     }
-    let walks = inside && walks(object, request);
     if let Some(other) = among::overlaps(object, scene, request.size).filter(|_| has(Effect::Behind)) {
         let from_others = walks.then(|| through::others(object, scene, request.size));
         if from_others.is_none_or(|others| !others.is_little) {
@@ -115,7 +113,7 @@ fn among_others(object: &Object, scene: &Scene, request: &Request<'_>) -> Option
         return None;
     }
     let reason = among::beside(object, scene, request.size)?;
-    (!(walks && meets(object, scene, request))).then_some(reason)
+    (!meets()).then_some(reason)
 }
 
 /// Whether what leaves a convex body can be looked for by the effect `around` alone, to which others cover all that is behind them,

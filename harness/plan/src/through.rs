@@ -55,7 +55,6 @@ fn all(scene: &Scene, size: [u32; 2]) -> Arc<[Others]> {
     let matrix = clip_from_world(scene, size[0], size[1]);
     let world_from_clip = matrix.as_dmat4().inverse();
     let share_and_area = |object: &Object| {
-        let mut sum = Sum::default();
         if !object.material.has_clear_inside() || !is_convex(object) {
             return (0.0, 0.0);
         }
@@ -67,7 +66,7 @@ fn all(scene: &Scene, size: [u32; 2]) -> Arc<[Others]> {
                 (RAYS_OF_COPY, step, places.map(|place| copies.shape.transformed(place.transform())).collect())
             }
         };
-        let mut area = 0.0;
+        let (mut sum, mut area) = (Sum::default(), 0.0);
         for mesh in copies {
             let bounds = Bounds::of(mesh.positions.iter().copied());
             let Some((least, most)) = seen(bounds, matrix) else { continue };

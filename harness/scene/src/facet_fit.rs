@@ -86,6 +86,24 @@ impl Recovered {
     pub fn uncertainty(&self) -> f64 {
         self.facets.iter().map(|facet| facet.uncertainty).fold(0.0, f64::max)
     }
+
+    /// Returns the share of the area of `mesh`, from which the stone was recovered, of triangles that are so: by the numbers of their
+    /// corners, their unit normals, and those of the facets that cover them.
+    pub(crate) fn share_of_area(&self, mesh: &Mesh, is_so: impl Fn([usize; 3], DVec3, DVec3) -> bool) -> f64 {
+        let (mut so, mut whole) = (0.0, 0.0);
+        for corners in mesh.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|corner| corners[corner] as usize);
+            let [a, b, c] = corners.map(|corner| mesh.positions[corner].as_dvec3());
+            let (across, middle) = ((b - a).cross(c - a), (a + b + c) / 3.0);
+            let height = |facet: &&RecoveredFacet| facet.plane.height(middle);
+            let covers = self.facets.iter().max_by(|one, other| height(one).total_cmp(&height(other)));
+            whole += across.length();
+            if covers.is_some_and(|facet| is_so(corners, across.normalize_or_zero(), facet.plane.normal)) {
+                so += across.length();
+            }
+        }
+        so / whole
+    }
 }
 
 /// Recovers the stone of a mesh that is convex but for rounding.
@@ -134,7 +152,6 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
     // Of a lattice along the axes, whose rounding is alike in corners that are alike, distances tell too little.
     let half_step = noise.max(registration::noise(mesh) / 3f64.sqrt());
     let order = symmetry.map_or(1.0, |symmetry| f64::from(symmetry.order()).sqrt());
-    let turned = turned(mesh, &points, &planes);
     let facets = facets.iter().zip(&planes).map(|(facet, plane)| RecoveredFacet {
         plane: Plane { normal: plane.normal, distance: plane.distance + plane.normal.dot(centre) },
         uncertainty: 2.0 * half_step / width(&facet.points, plane.normal) / order,
@@ -148,23 +165,11 @@ pub fn recover(mesh: &Mesh) -> Result<Recovered, NotRecovered> {
         symmetry,
         is_steady,
     };
-    if is_steady || turned <= TURNED { Ok(recovered) } else { Err(NotRecovered::Turned { share: turned }) }
-}
-
-/// Returns the share of a mesh's area whose triangles are turned far into the facets that cover them.
-fn turned(mesh: &Mesh, points: &[DVec3], planes: &[Plane]) -> f64 {
-    let (mut far, mut whole) = (0.0, 0.0);
-    for corners in mesh.indices.chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|corner| points[corners[corner] as usize]);
-        let across = (b - a).cross(c - a);
-        let middle = (a + b + c) / 3.0;
-        let covers = planes.iter().max_by(|one, other| one.height(middle).total_cmp(&other.height(middle)));
-        whole += across.length();
-        if covers.is_some_and(|plane| across.dot(plane.normal) < UNSTEADY.cos() * across.length()) {
-            far += across.length();
-        }
+    if is_steady {
+        return Ok(recovered);
     }
-    far / whole
+    let share = recovered.share_of_area(mesh, |_, normal, facet| normal.dot(facet) < UNSTEADY.cos());
+    if share <= TURNED { Ok(recovered) } else { Err(NotRecovered::Turned { share }) }
 }
 
 /// Returns the greatest depth below the hull of the mesh's surface, at the corners and the middles of sides: where rounding bends a

@@ -47,6 +47,7 @@ pub mod polyhedron;
 pub mod registration;
 mod scene;
 pub mod shells;
+mod smoothstep;
 pub mod solver;
 pub mod spectrum;
 pub mod stones;

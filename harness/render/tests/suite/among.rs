@@ -341,20 +341,24 @@ fn a_clear_body_is_seen_behind_a_pane() {
     }
 }
 
+fn octahedron() -> Object {
+    Object::new("stone", flat(&Scene::named("octahedron").expect("built in").objects[0].mesh), glass(1.5))
+}
+
+/// An opaque bar, by its half sides and its middle.
+fn bar(half: Vec3, at: Vec3) -> Object {
+    let mesh = cube(1.0);
+    let positions = mesh.positions.iter().map(|position| *position * half + at).collect();
+    Object::new("bar", Mesh { positions, ..mesh }, matte(Vec3::new(0.9, 0.3, 0.1)))
+}
+
 /// A prong in a stone is met by rays inside, and a band around it by what leaves: by the planes of its facets the stone looks as by
 /// the triangles of all bodies. Both follow the same rays, which end with less than a hundredth of the light.
 #[test]
 fn a_stone_in_its_setting_is_walked_as_it_is_by_triangles() {
-    let stone = Object::new("stone", flat(&Scene::named("octahedron").expect("built in").objects[0].mesh), glass(1.5));
-    let bar = |half: [f64; 3], at: [f64; 3]| {
-        let mesh = cube(1.0);
-        let [half, at] = [half, at].map(|sides| DVec3::from_array(sides).as_vec3());
-        let positions = mesh.positions.iter().map(|position| *position * half + at).collect();
-        Object::new("bar", Mesh { positions, ..mesh }, matte(Vec3::new(0.9, 0.3, 0.1)))
-    };
-    let within = bar([0.1, 0.6, 0.1], [0.75, 0.0, 0.0]);
-    let behind = bar([2.0, 2.0, 0.1], [0.0, 0.0, -1.4]);
-    let scene = scene(vec![stone, within, behind]);
+    let within = bar(Vec3::new(0.1, 0.6, 0.1), 0.75 * Vec3::X);
+    let behind = bar(Vec3::new(2.0, 2.0, 0.1), -1.4 * Vec3::Z);
+    let scene = scene(vec![octahedron(), within, behind]);
     let settings = |rung: &str| Settings { environment: Environment::Studio, ..of_rung(rung) };
     let chosen = drawn(&scene, &settings("by-material"));
     assert!(chosen.notes.is_empty() || !chosen.notes[0].to_string().contains("alone"), "{:?}", chosen.notes);
@@ -370,15 +374,8 @@ fn a_stone_in_its_setting_is_walked_as_it_is_by_triangles() {
 /// A body that reaches through a convex stone, and one that lies within it, are met by rays inside as by all triangles.
 #[test]
 fn what_reaches_deep_into_a_stone_is_walked_as_it_is_by_triangles() {
-    let stone =
-        || Object::new("stone", flat(&Scene::named("octahedron").expect("built in").objects[0].mesh), glass(1.5));
-    let bar = |half: Vec3| {
-        let mesh = cube(1.0);
-        let positions = mesh.positions.iter().map(|position| *position * half).collect();
-        Object::new("bar", Mesh { positions, ..mesh }, matte(Vec3::new(0.9, 0.3, 0.1)))
-    };
     for half in [Vec3::new(2.0, 0.1, 0.1), Vec3::splat(0.15)] {
-        let scene = scene(vec![stone(), bar(half)]);
+        let scene = scene(vec![octahedron(), bar(half, Vec3::ZERO)]);
         let settings = |rung: &str| Settings { environment: Environment::Studio, ..of_rung(rung) };
         let decided = Decisions::of(&scene.objects[0], &scene, &settings("by-material").request());
         assert!(!decided.rung.is_among() && decided.has(Effect::Nested), "{half}: {}", decided.reason);

@@ -11,10 +11,10 @@ use crate::{Averaging, BuiltInEnvironment, Camera, Lacking, Light, Metal, Object
 
 mod band;
 mod cloth;
+mod corner;
 mod head;
 
-/// Girdle radius of the head stone; and how much of the band sinks into the cloth.
-const STONE: f64 = head::STONE;
+/// How much of the band sinks into the cloth.
 const SUNK: f64 = 0.9;
 /// How far the ring is turned about the vertical, and leans towards who looks at it, in radians.
 const TURN: f64 = -0.62;
@@ -23,16 +23,17 @@ const LEAN: f64 = 0.16;
 /// Builds the scene.
 pub(super) fn ring(name: &str) -> Result<Scene, SceneError> {
     let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?.to_mesh(Averaging::default());
-    let standing = standing();
+    // From the ring's own space, about its middle with the stone upwards and the axis along z.
+    let turn = DQuat::from_rotation_y(TURN) * DQuat::from_rotation_x(LEAN);
+    let shift = turn * (band::outer_radius(PI) * DVec3::Y) - SUNK * DVec3::Y;
     let gold = || Metal::YellowGold.material();
-    let (turn, shift) = (standing.to_scale_rotation_translation().1, standing.w_axis.truncate());
-    let placed = |local: DMat4| brilliant.transformed(standing * local);
-    let head_stone = DMat4::from_translation(head::GIRDLE * DVec3::Y) * DMat4::from_scale(DVec3::splat(STONE));
+    let placed = |local: DMat4| brilliant.transformed(DMat4::from_rotation_translation(turn, shift) * local);
+    let head_stone = DMat4::from_translation(head::GIRDLE * DVec3::Y) * DMat4::from_scale(DVec3::splat(head::STONE));
     let mut objects = vec![
         Object::new("cloth", cloth::mesh(TURN), materials::matte("cloth", CLOTH)),
         Object::new("band", band::mesh().placed(turn, shift), gold()),
         Object::new("setting", head::mesh().placed(turn, shift), gold()),
-        Object::new("diamond", placed(head_stone), materials::sized(materials::diamond(), STONE as f32)),
+        Object::new("diamond", placed(head_stone), materials::sized(materials::diamond(), head::STONE as f32)),
     ];
     // Each a body of its own: beside lights and metal, the stage that draws copies would read one storage buffer more than every
     // device offers.
@@ -53,13 +54,6 @@ pub(super) fn ring(name: &str) -> Result<Scene, SceneError> {
 
 /// A dark blue, linear RGB: gold and clear stones stand out from it.
 const CLOTH: [f32; 3] = [0.013, 0.017, 0.032];
-
-/// Returns the transform from the ring's own space, about its middle with the stone upwards and the axis along z. The
-/// band's lowest place is above or below the world's origin.
-fn standing() -> DMat4 {
-    let turn = DQuat::from_rotation_y(TURN) * DQuat::from_rotation_x(LEAN);
-    DMat4::from_rotation_translation(turn, turn * (band::outer_radius(PI) * DVec3::Y) - SUNK * DVec3::Y)
-}
 
 /// Returns where the small stones of both shoulders are in the ring's own space, tables outwards, and their girdle radii.
 fn side_stones() -> Vec<(DMat4, f64)> {

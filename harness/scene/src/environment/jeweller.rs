@@ -6,6 +6,7 @@
 //! Radiances and places are our own, chosen by eye.
 
 use crate::environment_map::EnvironmentMap;
+use crate::smoothstep::smoothstep;
 use glam::{DVec2, DVec3};
 use lapidary_environment::oracle;
 use rayon::prelude::*;
@@ -114,8 +115,7 @@ fn radiance(lights: &[(DVec3, DVec3)], direction: DVec3) -> DVec3 {
     // Small lights stand before the flags.
     for (toward, radiance) in lights {
         let angle = direction.cross(*toward).length().atan2(direction.dot(*toward));
-        let inside = ((LIGHT + EDGE - angle) / (2.0 * EDGE)).clamp(0.0, 1.0);
-        sum += inside * inside * (3.0 - 2.0 * inside) * *radiance;
+        sum += smoothstep(LIGHT + EDGE, LIGHT - EDGE, angle) * *radiance;
     }
     sum
 }
@@ -123,6 +123,8 @@ fn radiance(lights: &[(DVec3, DVec3)], direction: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Environment;
+    use lapidary_srgb::oracle::luminance;
     use std::f64::consts::PI;
 
     /// Luminances of all directions of a grid, with their shares of the sphere.
@@ -133,19 +135,14 @@ mod tests {
             let uv =
                 DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) / DVec2::new(columns.into(), rows.into());
             let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(rows)).cos());
-            let light = radiance(oracle::direction_from_uv(uv)).dot(DVec3::new(0.2126, 0.7152, 0.0722));
-            (light, 0.5 * (edges[0] - edges[1]) / f64::from(columns))
+            (luminance(radiance(oracle::direction_from_uv(uv))), 0.5 * (edges[0] - edges[1]) / f64::from(columns))
         };
         places.map(one).collect()
     }
 
     fn of_map(map: &EnvironmentMap) -> Vec<(f64, f64)> {
-        let texel = |direction: DVec3| {
-            let uv = oracle::uv_from_direction(direction) * DVec2::new(map.width.into(), map.height.into());
-            let [red, green, blue, _] = map.pixels[uv.y as usize * map.width as usize + uv.x as usize];
-            DVec3::new(red.into(), green.into(), blue.into())
-        };
-        seen(texel)
+        let environment = Environment::Map(map.clone());
+        seen(|direction| environment.radiance(direction))
     }
 
     #[test]

@@ -38,7 +38,7 @@ impl<'a> Extension<'a> {
     }
 
     /// A number; `None` if the member is absent, or null: JSON has no infinity, for which JavaScript writes null.
-    pub(super) fn finite_number(&self, key: &str) -> Result<Option<f64>, String> {
+    pub(super) fn number_or_null(&self, key: &str) -> Result<Option<f64>, String> {
         if self.member(key).is_some_and(Value::is_null) { Ok(None) } else { self.number(key) }
     }
 

@@ -98,18 +98,22 @@ fn text(extras: Option<&RawValue>) -> Result<Option<&RawValue>, String> {
     }
 }
 
+/// Reads `extras.lapidary`; `None` if absent.
+fn read<'a, T: Deserialize<'a>>(extras: Option<&'a RawValue>) -> Result<Option<T>, String> {
+    let read = text(extras)?.map(|text| serde_json::from_str(text.get()));
+    read.transpose().map_err(|error| unreadable("extras.lapidary", &error))
+}
+
 /// The material's `extras.lapidary`, or `None` if absent.
 pub(super) fn lapidary(json: &JsonMaterial) -> Result<Option<Lapidary<'_>>, String> {
-    let lapidary = text(json.extras.as_deref())?.map(|text| serde_json::from_str(text.get()));
-    lapidary.transpose().map_err(|error| unreadable("extras.lapidary", &error))
+    read(json.extras.as_deref())
 }
 
 /// The environment that a scene's `extras.lapidary` names, or the usual one.
 pub(super) fn environment(extras: Option<&RawValue>) -> Result<BuiltInEnvironment, String> {
-    let Some(text) = text(extras)? else { return Ok(BuiltInEnvironment::default()) };
-    let OfScene { environment } =
-        serde_json::from_str(text.get()).map_err(|error| unreadable("extras.lapidary", &error))?;
-    let Some(json) = environment else { return Ok(BuiltInEnvironment::default()) };
+    let Some(json) = read(extras)?.and_then(|OfScene { environment }| environment) else {
+        return Ok(BuiltInEnvironment::default());
+    };
     let name: Option<String> = serde_json::from_str(json.get()).ok();
     let known = name.and_then(|name| BuiltInEnvironment::ALL.into_iter().find(|known| known.name() == name));
     known.ok_or_else(|| {

@@ -267,7 +267,7 @@ fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> 
     if let Some(color) = volume.color("attenuationColor")? {
         material.attenuation_color = color;
     }
-    if let Some(distance) = volume.finite_number("attenuationDistance")? {
+    if let Some(distance) = volume.number_or_null("attenuationDistance")? {
         // A GPU may flush a subnormal distance to 0.
         let single = distance as f32;
         if !(single.is_finite() && single >= f32::MIN_POSITIVE) {

@@ -59,23 +59,10 @@ fn exact(mesh: &Mesh, normals: Normals) -> Option<Result<Recovered, NotRecovered
 
 /// Whether the normals of a mesh are those of the facets that were recovered.
 fn shows_facets(mesh: &Mesh, recovered: &Recovered) -> bool {
-    let (mut flat, mut whole) = (0.0, 0.0);
-    for corners in mesh.indices.chunks_exact(3) {
-        let corners = [0, 1, 2].map(|corner| corners[corner] as usize);
-        let [a, b, c] = corners.map(|corner| mesh.positions[corner].as_dvec3());
-        let area = 0.5 * (b - a).cross(c - a);
-        let middle = (a + b + c) / 3.0;
-        let planes = recovered.facets.iter().map(|facet| facet.plane);
-        let Some(facet) = planes.max_by(|one, other| one.height(middle).total_cmp(&other.height(middle))) else {
-            continue;
-        };
-        let normal = facet.normal.as_vec3();
-        whole += area.length();
-        if corners.iter().all(|&corner| mesh.normals[corner].dot(normal) >= FLAT) {
-            flat += area.length();
-        }
-    }
-    flat >= MOST * whole
+    let flat = recovered.share_of_area(mesh, |corners, _, facet| {
+        corners.iter().all(|&corner| mesh.normals[corner].dot(facet.as_vec3()) >= FLAT)
+    });
+    flat >= MOST
 }
 
 #[cfg(test)]

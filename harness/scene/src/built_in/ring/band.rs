@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 use crate::Mesh;
+use crate::smoothstep::smoothstep;
 use crate::surfaces::grid;
+
+use super::corner::rounded_corner;
 
 /// Radius of the finger.
 const INNER: f64 = 8.5;
@@ -27,19 +30,13 @@ const EDGES: [f64; 3] = [0.42, 0.40, 0.06];
 const DOME: f64 = 0.17;
 const FIT: f64 = 0.16;
 
-/// Rises from 0 at `from` to 1 at `to`.
-fn step(from: f64, to: f64, at: f64) -> f64 {
-    let share = ((at - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
-}
-
 /// Thickness at an angle from the head, 0 to π: thin below the stone, thick at the shoulders.
 fn thickness(angle: f64) -> f64 {
-    1.3 + 0.8 * step(0.12, 0.38, angle) - 0.5 * step(1.0, 2.4, angle)
+    1.3 + 0.8 * smoothstep(0.12, 0.38, angle) - 0.5 * smoothstep(1.0, 2.4, angle)
 }
 
 fn half_width(angle: f64) -> f64 {
-    1.42 - 0.4 * step(0.7, 2.4, angle)
+    1.42 - 0.4 * smoothstep(0.7, 2.4, angle)
 }
 
 /// Returns the band's greatest radius at an angle from the head, 0 to π.
@@ -70,7 +67,7 @@ fn channel(stones: &[(f64, f64)], angle: f64) -> (f64, f64) {
     let reach = |(at, radius): (f64, f64)| (radius + PLAY) / girdle_radius(at);
     let (from, to) = (first.0 - reach(first), last.0 + reach(last));
     // Its ends are as steep as a stone's pavilion leaves room for.
-    let within = step(from - 0.045, from, angle) * step(to + 0.045, to, angle);
+    let within = smoothstep(from - 0.045, from, angle) * smoothstep(to + 0.045, to, angle);
     ((SET + PAVILION * radius + ROOM) * within + 2e-3, radius + PLAY)
 }
 
@@ -140,7 +137,7 @@ fn rounded(corners: &[(DVec2, f64)]) -> Vec<(DVec2, DVec2)> {
         }
         for step in 0..=STEPS {
             let share = step as f64 / STEPS as f64;
-            let place = start.lerp(*at, share).lerp(at.lerp(end, share), share);
+            let place = rounded_corner(start, *at, end, share);
             points.push((place, normal(before).lerp(normal(after), share).normalize()));
         }
     }

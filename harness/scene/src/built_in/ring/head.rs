@@ -6,6 +6,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::Mesh;
 use crate::surfaces::{grid, torus};
 
+use super::corner::rounded_corner;
+
 /// Girdle radius of the stone, and height of its girdle's middle above the ring's axis.
 pub(super) const STONE: f64 = 3.7;
 pub(super) const GIRDLE: f64 = 13.2;
@@ -60,10 +62,7 @@ fn path() -> Vec<(DVec2, DVec2)> {
     let mut line = vec![foot];
     let (start, end) = (bend - WIDE * (bend - foot).normalize(), bend + WIDE * DVec2::Y);
     line.extend((1..12).map(|part| foot.lerp(start, f64::from(part) / 12.0)));
-    line.extend((0..=10).map(|part| {
-        let share = f64::from(part) / 10.0;
-        start.lerp(bend, share).lerp(bend.lerp(end, share), share)
-    }));
+    line.extend((0..=10).map(|part| rounded_corner(start, bend, end, f64::from(part) / 10.0)));
     // Around the girdle's upper edge, always at the same distance, then along the crown.
     let edge = DVec2::new(STONE, GIRDLE + EDGE);
     let reach = WIRE + ROOM;
