@@ -336,7 +336,8 @@ fn what_a_turn_lacks_is_told_once() {
     let folder = folder();
     write_lacking_gem(folder.path());
     let usual = ["render", "gem.glb", "--size", "16", "--samples", "1", "--turntable", "3", "--out", "gem.png"];
-    let answer = succeeds(folder.path(), &[&usual[..], &["--rung", "proxy-2", "--exposure", "50"]].concat());
+    let answer = cook(folder.path(), &[&usual[..], &["--rung", "proxy-2", "--exposure", "50"]].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let mut lines: Vec<&str> = answer.stderr.lines().collect();
     let told = lines.len();
     assert!(answer.stderr.contains("emissiveFactor") && told >= 3, "{}", answer.stderr);
