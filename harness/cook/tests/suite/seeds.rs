@@ -1,5 +1,6 @@
 //! A failure can be reproduced with the printed command, and work can be divided into shards.
 
+use super::json;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Settings};
 use lapidary_assay::runner::Runner;
@@ -7,13 +8,8 @@ use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
 use lapidary_cookbook as cookbook;
 use lapidary_testing::program::{cook, succeeds};
-use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-fn json(text: &str) -> Vec<Value> {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
 
 #[test]
 fn a_failure_runs_again_with_the_command_that_it_prints() {
